@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -16,15 +17,23 @@
 #include "roadbed/planning/pilot/planned_trajectory.h"
 #include "roadbed/planning/route/match_place.h"
 #include "roadbed/planning/route/router.h"
+#include "roadbed/planning/speed/lead.h"
 
 namespace roadbed::planning::inline pilot {
 namespace {
 
 constexpr double kTakenAway_m = 12.0;      // from its line, farther than planning leads
+constexpr double kAcross = -0.2;           // cosine, of who stands a little more than across a lane
 constexpr double kAsksAgainAfter_s = 1.0;  // for a route, where there was none
 constexpr double kYellow_s = 3.0;          // how long one lasts [VwV-StVO to § 37: 3 s at 50 km/h]
 constexpr double kForLong_s = 1e6;
 constexpr double kAtGoal_m = 1.0;
+constexpr double kStops_mps2 = 3.0, kGently_mps2 = 1.0, kBefore_m = 0.5,
+                 kBeside_m = 0.1;  // of a trajectory's end
+
+double stopping_m(double speed_mps, double braking_mps2) {
+  return 0.5 * speed_mps * speed_mps / braking_mps2;
+}
 
 void refuse_unusable(const PilotView& view) {
   const auto refuse = [](const std::string& what) {
@@ -56,6 +65,18 @@ struct Found {
   std::string reason;  ///< why there is none
 };
 
+bool heads_along(const geometry::Pose2& map_from_vehicle, double heading_rad) {
+  return std::cos(map_from_vehicle.heading_rad - heading_rad) >= kAcross;
+}
+
+/// Far beside it, or turned around.
+bool is_away_from(const ReferenceLine& line, const geometry::Pose2& map_from_vehicle) {
+  const geometry::LinePosition at = line.project(map_from_vehicle.position());
+  const double heading_rad = line.at(at.s_m).heading_rad;
+  const Eigen::Vector2d apart = map_from_vehicle.position() - line.at(at.s_m).in_map;
+  return apart.norm() > kTakenAway_m || !heads_along(map_from_vehicle, heading_rad);
+}
+
 /// Lanes under the vehicle that it heads along; else the one that fits it best nearby, as on a
 /// driveway or across a lane.
 std::vector<RoutePlace> places_to_set_off(const map::RoadMap& road_map,
@@ -67,7 +88,10 @@ std::vector<RoutePlace> places_to_set_off(const map::RoadMap& road_map,
        match_place(road_map, map_from_vehicle.position(), map_from_vehicle.heading_rad,
                    {.reach_m = reach_m})) {
     if (near.verdict != MatchVerdict::chosen) continue;
-    places.push_back({near.place, near.sense == Sense::against ? Sense::against : Sense::along});
+    const Sense sense = near.sense == Sense::against ? Sense::against : Sense::along;
+    const double lane_rad = road_map.lane(near.place.lane).pose_at(near.place.s_m).heading_rad;
+    const double turn_rad = sense == Sense::against ? std::numbers::pi : 0.0;
+    if (heads_along(map_from_vehicle, lane_rad + turn_rad)) places.push_back({near.place, sense});
   }
   return places;
 }
@@ -148,12 +172,12 @@ class Pilot::Impl {
 
   void keep_route(const PilotView& view) {
     if (decision_.detour) return take(*std::exchange(decision_.detour, std::nullopt));
-    const Eigen::Vector2d here = view.ego.map_from_vehicle.position();
-    const bool is_away = task_ && std::abs(task_->line.project(here).d_m) > kTakenAway_m;
-    if ((task_ && !is_away) || view.t_s < next_question_s_) return;
+    if (planner_ && !is_away_from(task_->line, view.ego.map_from_vehicle)) return;
+    if (view.t_s < next_question_s_) return;
     next_question_s_ = view.t_s + kAsksAgainAfter_s;
     Found found = route_from(*setup_.road_map, view.ego.map_from_vehicle, setup_.goal);
     why_no_route_ = std::move(found.reason);
+    planner_.reset();  // refers to the task
     if (found.route) begin(*std::move(found.route), view);
   }
 
@@ -161,7 +185,6 @@ class Pilot::Impl {
     RouteLine drawn =
         line_along(*setup_.road_map, route, setup_.vehicle, setup_.driving.desired_speed_mps);
     OtherLevels other_levels(*setup_.road_map, route);
-    planner_.reset();
     task_ = std::make_unique<DrivingTask>(DrivingTask{.kept_map = setup_.road_map,
                                                       .field = setup_.occupied,
                                                       .start = view.ego.map_from_vehicle,
@@ -214,14 +237,38 @@ class Pilot::Impl {
     const control::TrackingError error =
         tracking_error(path, view.ego.map_from_vehicle, setup_.vehicle.wheelbase_m, *front_s_m_);
     PilotAnswer answer{
-        .trajectory = planned_trajectory({path, replanner.s_m()}, view.t_s, view.ego, decision_,
-                                         setup_.vehicle),
+        .trajectory = planned_trajectory({path, replanner.s_m(), stops_by_s_m(path, view.t_s)},
+                                         view.t_s, view.ego, decision_, setup_.vehicle),
         .acceleration_mps2 = decision_.acceleration_mps2,
         .steering_rad = tracking_steering_rad(error, view.ego.speed_mps, setup_.vehicle),
         .decision = decision_};
     const double missed_m = replanner.s_m() - task_->line.goal_s_m();
     answer.is_at_goal = view.ego.speed_mps <= 0.0 && std::abs(missed_m) <= kAtGoal_m;
     return answer;
+  }
+
+  /// What a trajectory that is driven to its end has to stop before: the halt, who stands on the
+  /// path, and places to wait at beyond what was planned.
+  double stops_by_s_m(const PlannedPath& path, double t_s) const {
+    const double s_m = planner_->replanner().s_m();
+    const SpeedState& end = decision_.drive.back();
+    const double planned_m = end.ahead_m;
+    double by_s_m =
+        decision_.halt_m ? s_m + *decision_.halt_m : std::numeric_limits<double>::infinity();
+    std::vector<bool> drives;
+    for (const Obstacle& other : task_->obstacles) drives.push_back(!is_standing(other, t_s));
+    const double look_m = std::max(planned_m + stopping_m(end.speed_mps, kStops_mps2),
+                                   stopping_m(decision_.drive.front().speed_mps, kGently_mps2));
+    const auto stands =
+        find_lead(path, s_m, look_m, task_->obstacles, t_s, setup_.vehicle, kBeside_m, drives);
+    if (stands) by_s_m = std::min(by_s_m, s_m + stands->gap_m - kBefore_m);
+    for (const StopPoint& place : task_->stop_points) {
+      const double at_s_m = place.s_m - setup_.vehicle.front_m() - kBefore_m;
+      const bool is_green =
+          place.light && colour_at(lights_[*place.light], t_s) == LightColour::green;
+      if (at_s_m > s_m + planned_m && !is_green) by_s_m = std::min(by_s_m, at_s_m);
+    }
+    return by_s_m;
   }
 
   PilotSetup setup_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace roadbed::planning::inline pilot {
@@ -62,19 +63,47 @@ std::vector<SpeedState> in_steps(const std::vector<SpeedState>& drive) {
   return steps;
 }
 
-std::vector<SpeedState> whole_drive(const VehicleState& measured, const PlannerCommand& decision) {
+double needed_mps2(const SpeedState& from, double room_m) {
+  constexpr double kLeast_m = 0.1;
+  return 0.5 * from.speed_mps * from.speed_mps / std::max(kLeast_m, room_m - from.ahead_m);
+}
+
+/// Gives up what of a drive leads too far to stop in time, comfortably if that can be done.
+void cut_before(std::vector<SpeedState>& drive, double room_m) {
+  while (drive.size() > 1 && needed_mps2(drive.back(), room_m) > kComfortable_mps2) {
+    drive.pop_back();
+  }
+}
+
+std::vector<SpeedState> whole_drive(const VehicleState& measured, const PlannerCommand& decision,
+                                    double room_m) {
   const double wanted_mps2 = decision.acceleration_mps2;
   const std::vector<SpeedState>& foreseen = decision.drive;
   const double foreseen_mps2 = foreseen.size() > 1 ? foreseen[1].acceleration_mps2 : 0.0;
-  if (wanted_mps2 < std::min(0.0, foreseen_mps2) - kHarder_mps2) {
-    return stop_from(measured.speed_mps, -wanted_mps2);
-  }
+  const auto stop_now = [&](double least_mps2) {
+    const double needed = needed_mps2({.speed_mps = measured.speed_mps}, room_m);
+    return stop_from(measured.speed_mps, std::clamp(needed, least_mps2, kHardest_mps2));
+  };
+  if (wanted_mps2 < std::min(0.0, foreseen_mps2) - kHarder_mps2) return stop_now(-wanted_mps2);
   if (decision.set_speed_mps <= 0.0) {  // what was foreseen is of a path that is given up
-    return stop_from(measured.speed_mps, std::max(kLeast_mps2, -wanted_mps2));
+    return stop_now(std::max(kLeast_mps2, -wanted_mps2));
   }
   std::vector<SpeedState> drive = in_steps(foreseen);
-  stop_after(drive, braking_after_mps2(foreseen, decision.lead));
+  const double after_mps2 = braking_after_mps2(foreseen, decision.lead);
+  cut_before(drive, room_m);
+  const double needed = needed_mps2(drive.back(), room_m);
+  stop_after(drive, std::clamp(needed, after_mps2, kHardest_mps2));
   return drive;
+}
+
+double way_to_m(const PlannedPath& path, double s_m, double to_s_m) {
+  constexpr double kFar_m = 1000.0;
+  if (to_s_m > s_m + kFar_m) return std::numeric_limits<double>::infinity();
+  double way_m = 0.0;
+  for (; s_m < to_s_m; s_m += kWayStep_m) {
+    way_m += std::min(kWayStep_m, to_s_m - s_m) * path.place_at(s_m).stretch;
+  }
+  return way_m;
 }
 
 /// Station after `way_m` of the path.
@@ -107,7 +136,8 @@ geometry::Trajectory planned_trajectory(const WayToDrive& way, double t_s,
                                         const geometry::VehicleShape& vehicle) {
   std::vector<geometry::TrajectoryPoint> rows;
   double s_m = way.from_s_m, ahead_m = 0.0;
-  for (const SpeedState& state : whole_drive(measured, decision)) {
+  const double room_m = way_to_m(way.path, way.from_s_m, way.to_s_m);
+  for (const SpeedState& state : whole_drive(measured, decision, room_m)) {
     s_m = station_after(way.path, s_m, state.ahead_m - ahead_m);
     ahead_m = std::max(ahead_m, state.ahead_m);
     const PlannedPath::Place place = way.path.place_at(s_m);

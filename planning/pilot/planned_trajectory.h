@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -10,15 +11,17 @@
 
 namespace roadbed::planning::inline pilot {
 
-/// Where a vehicle drives along, and from which station on.
+/// Where a vehicle drives along, from which station on, and where it has to have stopped.
 struct WayToDrive {
   const PlannedPath& path;
   double from_s_m;
+  double to_s_m = std::numeric_limits<double>::infinity();
 };
 
 /// The trajectory of a decision: along the path at the speeds that are foreseen, a row every 0.1 s,
-/// then to a stop, so that it may be driven to its end where nothing comes after it. A decision to
-/// brake harder than the drive foresees brakes on to a stop at once.
+/// then to a stop, so that it may be driven to its end where nothing comes after it: from where 3
+/// m/s² lead to a stop in time, or as hard as it takes. A decision to brake harder than the drive
+/// foresees brakes on to a stop at once.
 /// @param t_s  of the first row.
 geometry::Trajectory planned_trajectory(const WayToDrive& way, double t_s,
                                         const VehicleState& measured,

@@ -59,6 +59,53 @@ TEST_F(Pilots, DriveToTheGoalAndStandThere) {
   EXPECT_LT((view_.ego.map_from_vehicle.position() - goal).norm(), 1.5);
 }
 
+// Wherever they stand on the bypass: what a trajectory does after its first seconds, too.
+TEST_F(Pilots, GiveTrajectoriesThatMayBeDrivenToTheirEnds) {
+  for (const double ahead_m : {60.0, 110.0, 140.0, 180.0}) {
+    for (const double speed_mps : {12.0, 16.0, 20.0}) {
+      SCOPED_TRACE(testing::Message() << ahead_m << " m ahead at " << speed_mps << " m/s");
+      PilotSetup faster = setup();
+      faster.driving.desired_speed_mps = 25.0;
+      Pilot pilot(std::move(faster));
+      PilotView view;
+      view.ego = {.map_from_vehicle = place("31/0/-2", 20.0), .speed_mps = speed_mps};
+      for (const char* lane : {"31/0/-1", "31/0/-2"}) {
+        view.objects.push_back({.id = lane, .centre = place(lane, 20.0 + ahead_m)});
+      }
+      for (int k = 0; k < 10; ++k) {
+        const PilotAnswer answer = pilot.step(view);
+        const geometry::TrajectoryPoint& end = answer.trajectory.points().back();
+        const geometry::Rectangle body = geometry::body_at(end.pose(), geometry::VehicleShape{});
+        const double along_m = body.axis.dot(view.objects.back().centre.position() - body.centre);
+        EXPECT_GT(along_m, body.half_length_m + 0.5 * view.objects.back().length_m) << k;
+        view.t_s += 0.1;
+        const geometry::TrajectoryPoint now = answer.trajectory.at(view.t_s);
+        view.ego = {.map_from_vehicle = now.pose(),
+                    .speed_mps = now.speed_mps,
+                    .steering_rad = now.steering_rad,
+                    .acceleration_mps2 = now.acceleration_mps2};
+      }
+    }
+  }
+}
+
+TEST_F(Pilots, StopWhereTheyAreWhenTurnedAroundOrTakenAwayFromAllRoads) {
+  Pilot pilot(setup());
+  pilot.step(view_);
+  const geometry::Pose2 turned = view_.ego.map_from_vehicle * geometry::Pose2{0, 0, 3.14159};
+  for (const geometry::Pose2& taken : {turned, geometry::Pose2{9999.0, 9999.0, 0.0}}) {
+    view_.t_s += 2.0;
+    view_.ego.map_from_vehicle = taken;
+    const PilotAnswer answer = pilot.step(view_);
+    EXPECT_EQ(answer.decision.behaviour, Behaviour::stop);
+    EXPECT_EQ(answer.decision.reason,
+              "no route leads to the goal: the vehicle stands along no lane");
+    const geometry::TrajectoryPoint& first = answer.trajectory.points().front();
+    EXPECT_EQ(first.pose().position(), taken.position());
+    EXPECT_NEAR(first.heading_rad, taken.heading_rad, 1e-9);
+  }
+}
+
 TEST_F(Pilots, StandBehindWhoStandsWhereverTheyAreNotTold) {
   Pilot pilot(setup());
   // All lanes of the bypass are closed, 60 m ahead.

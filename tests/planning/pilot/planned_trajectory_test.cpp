@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "roadbed/planning/reference/reference_line.h"
@@ -89,6 +90,29 @@ TEST(PlannedTrajectory, EndsInAStop) {
         (driven.points()[i].pose().position() - driven.points()[i - 1].pose().position()).norm();
   }
   EXPECT_NEAR(way_m, 6.0 * 2.0 + 36.0 / 6.0, 0.1);
+}
+
+// A drive of 5 s at 20 m/s and a stop at 3 m/s² take 167 m.
+TEST(PlannedTrajectory, StopsBeforeWhereItHasToHaveStopped) {
+  const ReferenceLine line = ReferenceLine::through({{0, 0}, {400, 0}}, 3.0, 30.0);
+  const PlannedPath path(line, [](double s_m) { return LateralState{.s_m = s_m}; });
+  PlannerCommand gentle = decision(steady(20.0, 5.0));
+  gentle.acceleration_mps2 = -1.3;  // alone it leads 154 m on
+  for (const PlannerCommand& command : {decision(steady(20.0, 5.0)), gentle}) {
+    for (const double to_s_m : {30.0, 80.0, 98.0, 140.0, 160.0}) {
+      SCOPED_TRACE(testing::Message() << to_s_m << " m");
+      const geometry::Trajectory driven = planned_trajectory(
+          {path, 5.0, 5.0 + to_s_m}, 0.0, {.speed_mps = 20.0}, command, geometry::VehicleShape{});
+      EXPECT_LT(driven.points().back().x_m, 5.0 + to_s_m + 0.1);
+      EXPECT_EQ(driven.points().back().speed_mps, 0.0);
+      const double needed_mps2 = 20.0 * 20.0 / (2.0 * to_s_m);
+      double hardest_mps2 = 0.0;
+      for (const auto& row : driven.points()) {
+        hardest_mps2 = std::max(hardest_mps2, -row.acceleration_mps2);
+      }
+      EXPECT_LT(hardest_mps2, std::max(3.0, needed_mps2) + 0.2);  // no harder than it takes
+    }
+  }
 }
 
 TEST(PlannedTrajectory, BrakesAtOnceWhereThatIsDecided) {
