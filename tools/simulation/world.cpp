@@ -67,6 +67,13 @@ Course along_route(const Scenario& scenario, const map::RoadMap& road_map, const
       {start.on_lane, against ? planning::Sense::against : planning::Sense::along}, scenario.goal);
   planning::RouteLine drawn =
       planning::line_along(road_map, route, scenario.vehicle, scenario.options.desired_speed_mps);
+  const geometry::LinePosition at = drawn.line.project(start.map_from_vehicle.position());
+  const double turn_rad = drawn.line.at(at.s_m).heading_rad - start.map_from_vehicle.heading_rad;
+  if (std::cos(turn_rad) <= 0.0) {
+    refuse(scenario, scenario.start.pointer,
+           "heads against the lane, along which the route to the goal leads",
+           "turn the vehicle, or set it in the lane of its direction");
+  }
   return {std::move(route), std::move(drawn.line), drawn.options};
 }
 
@@ -121,7 +128,7 @@ Course through_way_points(const Scenario& scenario, const map::RoadMap& road_map
 class ObstacleMaker {
  public:
   ObstacleMaker(const Scenario& scenario, const map::RoadMap& road_map)
-      : scenario_(scenario), road_map_(road_map), lane_ends_(lane_ends(road_map)) {}
+      : scenario_(scenario), road_map_(road_map), lane_ends_(planning::lane_ends(road_map)) {}
 
   Obstacle make(const ScenarioObstacle& from) const {
     Obstacle obstacle{.id = from.id,
