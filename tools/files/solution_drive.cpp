@@ -8,21 +8,24 @@
 namespace roadbed::tools::inline files {
 namespace {
 
-/// Point-mass states have two speeds and no orientation.
-DrivePose state_of(const map::XmlDocument& xml, pugi::xml_node state, double step_s) {
+/// Point-mass states have two speeds and no orientation; commonroad-io calls them xVelocity and
+/// yVelocity. At rest they keep the heading that they had before.
+DrivePose state_of(const map::XmlDocument& xml, pugi::xml_node state, double step_s,
+                   double heading_before_rad) {
   DrivePose pose{.t_s = step_s * xml.text_number(state, "time"),
                  .x_m = xml.text_number(state, "x"),
                  .y_m = xml.text_number(state, "y"),
-                 .heading_rad = 0.0};
+                 .heading_rad = heading_before_rad};
   if (state.child("orientation")) {
     pose.heading_rad = xml.text_number(state, "orientation");
     if (state.child("velocity")) pose.speed_mps = xml.text_number(state, "velocity");
     return pose;
   }
-  const double ahead_mps = xml.text_number(state, "velocity");
-  const double left_mps = xml.text_number(state, "velocityY");
-  pose.heading_rad = std::atan2(left_mps, ahead_mps);
-  pose.speed_mps = std::hypot(ahead_mps, left_mps);
+  const bool is_plain = state.child("velocity");
+  const double along_x_mps = xml.text_number(state, is_plain ? "velocity" : "xVelocity");
+  const double along_y_mps = xml.text_number(state, is_plain ? "velocityY" : "yVelocity");
+  pose.speed_mps = std::hypot(along_x_mps, along_y_mps);
+  if (*pose.speed_mps > 0.0) pose.heading_rad = std::atan2(along_y_mps, along_x_mps);
   return pose;
 }
 
@@ -58,7 +61,8 @@ DrivePoses parse_solution(std::string_view bytes, const std::string& name,
   }
   for (const pugi::xml_node state : driven.children()) {
     if (!std::string_view(state.name()).ends_with("State")) continue;
-    read.poses.push_back(state_of(xml, state, step_s));
+    const double before_rad = read.poses.empty() ? 0.0 : read.poses.back().heading_rad;
+    read.poses.push_back(state_of(xml, state, step_s, before_rad));
     read.places.push_back(static_cast<std::size_t>(xml.line_of(state)));
   }
   return read;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
@@ -89,6 +90,23 @@ TEST(DriveFile, OfASolutionHasThePlaceOfTheBodysCentre) {
   EXPECT_NEAR(row.x_m, 1.0 - (0.5 * 4.508 - 0.8312829), 1e-6);
   EXPECT_EQ(row.y_m, 2.0);
   EXPECT_EQ(row.speed_mps, 3.0);
+}
+
+TEST(DriveFile, OfAPointMassHasTheSpeedsThatEitherPairOfNamesSays) {
+  for (const auto& [along_x, along_y] :
+       {std::pair("velocity", "velocityY"), std::pair("xVelocity", "yVelocity")}) {
+    const std::string solution = fmt::format(
+        "<?xml version=\"1.0\"?>\n<CommonRoadSolution benchmark_id=\"PM2:SM1:A-1:2020a\">\n"
+        "<pmTrajectory planningProblem=\"1\">\n"
+        "<pmState><x>1</x><y>2</y><{0}>3</{0}><{1}>4</{1}><time>0</time></pmState>\n"
+        "<pmState><x>1</x><y>2</y><{0}>0</{0}><{1}>0</{1}><time>1</time></pmState>\n"
+        "</pmTrajectory></CommonRoadSolution>",
+        along_x, along_y);
+    const auto rows = parse_drive(solution, "a drive", {.rate_hz = 10.0}).points();
+    EXPECT_NEAR(rows[0].speed_mps, 5.0, 1e-12);
+    EXPECT_EQ(rows[1].speed_mps, 0.0);
+    for (const auto& row : rows) EXPECT_NEAR(row.heading_rad, std::atan2(4.0, 3.0), 1e-12);
+  }
 }
 
 TEST(DriveFile, IsStillATableWhereItIsOne) {
