@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numeric>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
@@ -49,16 +48,6 @@ TrajectoryPoint rear_axle(const DrivePose& pose, const Pose2& pose_in_vehicle) {
           .speed_mps = pose.speed_mps.value_or(0.0)};
 }
 
-// Along the body, over the steps before and behind.
-double speed_at(const std::vector<TrajectoryPoint>& rows, std::size_t i) {
-  const TrajectoryPoint& from = rows[i == 0 ? 0 : i - 1];
-  const TrajectoryPoint& to = rows[std::min(i + 1, rows.size() - 1)];
-  if (!(to.t_s > from.t_s)) return 0.0;
-  return ((to.x_m - from.x_m) * std::cos(rows[i].heading_rad) +
-          (to.y_m - from.y_m) * std::sin(rows[i].heading_rad)) /
-         (to.t_s - from.t_s);
-}
-
 class DriveOfPoses {
  public:
   DriveOfPoses(const DrivePoses& read, const std::string& name) : read_(read), name_(name) {}
@@ -71,7 +60,7 @@ class DriveOfPoses {
       rows.push_back(rear_axle(pose, pose_in_vehicle));
     }
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (!read_.poses[i].speed_mps) rows[i].speed_mps = speed_at(rows, i);
+      if (!read_.poses[i].speed_mps) rows[i].speed_mps = speed_of_way_mps(rows, i);
     }
     if (const auto fault = implausible_row(rows)) {
       refuse(fault->row, "", fault->found, fault->needed, fault->remedy);

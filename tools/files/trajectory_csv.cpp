@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
@@ -192,6 +193,11 @@ geometry::Trajectory parse_trajectory_csv(std::string_view bytes, const std::str
     table.refuse("row", "there is none", "at least one below the header", "add it");
   }
   check_plausible(points, lines, name);
+  if (!table.find_column("speed_mps")) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i].speed_mps = speed_of_way_mps(points, i);
+    }
+  }
   return geometry::Trajectory(std::move(points));
 }
 
@@ -213,6 +219,15 @@ std::string write_trajectory_csv(const geometry::Trajectory& drive) {
   }
   fmt::format_to(out, "\n");
   return fmt::to_string(text);
+}
+
+double speed_of_way_mps(const std::vector<TrajectoryPoint>& rows, std::size_t i) {
+  const TrajectoryPoint& from = rows[i == 0 ? 0 : i - 1];
+  const TrajectoryPoint& to = rows[std::min(i + 1, rows.size() - 1)];
+  if (!(to.t_s > from.t_s)) return 0.0;
+  return ((to.x_m - from.x_m) * std::cos(rows[i].heading_rad) +
+          (to.y_m - from.y_m) * std::sin(rows[i].heading_rad)) /
+         (to.t_s - from.t_s);
 }
 
 // Degrees turn by impossible steps as well, and are the better word for it.

@@ -14,9 +14,10 @@ namespace roadbed::tools::inline files {
 
 /// Reads a drive: a header line with column names, then a row per state, at increasing times.
 ///
-/// `t_s,x_m,y_m,heading_rad` must be there; `speed_mps,acceleration_mps2,steering_rad,
-/// curvature_per_m` are 0 where the column is missing. Order is free; other columns are ignored.
-/// Poses are those of the rear axle's centre in source coordinates.
+/// `t_s,x_m,y_m,heading_rad` must be there; without `speed_mps` speeds follow from the poses, and
+/// `acceleration_mps2,steering_rad,curvature_per_m` are 0 where the column is missing. Order is
+/// free; other columns are ignored. Poses are those of the rear axle's centre in source
+/// coordinates.
 /// @throws InputError naming line and column; also where rows cannot be a drive, see
 ///         `implausible_row`.
 geometry::Trajectory read_trajectory_csv(const std::filesystem::path& file);
@@ -26,6 +27,9 @@ geometry::Trajectory parse_trajectory_csv(std::string_view bytes, const std::str
 
 /// All eight columns, in the order above; reading it gives the same numbers, bit for bit.
 std::string write_trajectory_csv(const geometry::Trajectory& drive);
+
+/// Of row `i`, along the body, over the steps before and behind it; 0 where there is only one row.
+double speed_of_way_mps(const std::vector<geometry::TrajectoryPoint>& rows, std::size_t i);
 
 /// What cannot be a drive of a vehicle, in rows as a file has them.
 struct ImplausibleRow {

@@ -58,7 +58,29 @@ TEST(TrajectoryCsv, TakesColumnsByNameInAnyOrderWithSpacesCarriageReturnsAndExtr
   EXPECT_EQ(drive.points()[0].x_m, 1.5);
   EXPECT_EQ(drive.points()[0].y_m, 2.0);
   EXPECT_EQ(drive.points()[1].heading_rad, 0.5);
-  EXPECT_EQ(drive.points()[1].speed_mps, 0.0);
+  EXPECT_EQ(drive.points()[1].acceleration_mps2, 0.0);
+}
+
+TEST(TrajectoryCsv, TakesSpeedsFromTheWayWhereItHasNone) {
+  // On a circle of 20 m, forwards and backwards.
+  for (const double speed_mps : {4.0, -4.0}) {
+    std::string bare = "t_s,x_m,y_m,heading_rad\n", said = "t_s,x_m,y_m,heading_rad,speed_mps\n";
+    for (int i = 0; i < 50; ++i) {
+      const double heading_rad = 0.005 * speed_mps * i;
+      const std::string row = fmt::format("{},{},{},{}", 0.1 * i, 20.0 * std::sin(heading_rad),
+                                          -20.0 * std::cos(heading_rad), heading_rad);
+      bare += row + "\n";
+      said += row + ",7\n";
+    }
+    const Trajectory drive = parse_trajectory_csv(bare, "a");
+    // The chord is shorter than the arc by 1/6 of the square of half its angle.
+    for (const TrajectoryPoint& point : drive.points()) {
+      EXPECT_NEAR(point.speed_mps, speed_mps, 0.001) << point.t_s;
+    }
+    EXPECT_EQ(parse_trajectory_csv(said, "a").points()[1].speed_mps, 7.0);
+  }
+  EXPECT_EQ(parse_trajectory_csv("t_s,x_m,y_m,heading_rad\n0,1,2,0\n", "a").points()[0].speed_mps,
+            0.0);
 }
 
 TEST(TrajectoryCsv, NamesLineAndColumnOfWhatItCannotUse) {
