@@ -100,9 +100,9 @@ std::string first_bytes(const fs::path& file, std::size_t size) {
   return bytes;
 }
 
-/// What a stream held.
+/// What a stream gave.
 struct StreamBytes {
-  std::string unpacked, sha256;
+  std::string stored, sha256;
 };
 
 StreamBytes all_of_stream(const fs::path& file) {
@@ -119,7 +119,6 @@ StreamBytes all_of_stream(const fs::path& file) {
   } while (there == bytes.size());
   bytes.resize(there);
   std::string sha256 = sha256_of_bytes(bytes);
-  if (is_packed(bytes)) bytes = unpacked(bytes, input_name(file));
   if (bytes.empty()) refuse(file, "is empty", "check how it was made");
   bytes.shrink_to_fit();
   return {std::move(bytes), std::move(sha256)};
@@ -140,23 +139,25 @@ const StreamBytes& stream_bytes(const fs::path& file) {
   return kept.emplace(file.native(), all_of_stream(file)).first->second;
 }
 
+std::string stored_bytes(const fs::path& file, std::size_t size) {
+  return is_stream(file) ? stream_bytes(file).stored.substr(0, size) : first_bytes(file, size);
+}
+
 }  // namespace
 
-std::string read_file(const fs::path& file) {
-  if (is_stream(file)) return stream_bytes(file).unpacked;
-  std::string bytes = first_bytes(file, std::numeric_limits<std::size_t>::max());
+std::string read_file(const fs::path& file, std::size_t (*most_unpacked)(std::size_t)) {
+  std::string bytes = stored_bytes(file, std::numeric_limits<std::size_t>::max());
   if (!is_packed(bytes)) return bytes;
-  bytes = unpacked(bytes, input_name(file));
+  bytes = unpacked(bytes, input_name(file), most_unpacked(bytes.size()));
   if (bytes.empty()) refuse(file, "is empty when unpacked", "check how it was made");
   return bytes;
 }
 
 std::string read_file_start(const fs::path& file, std::size_t size) {
-  if (is_stream(file)) return stream_bytes(file).unpacked.substr(0, size);
-  std::string start = first_bytes(file, size);
+  std::string start = stored_bytes(file, size);
   if (!is_packed(start)) return start;
   constexpr std::size_t most_stored = std::size_t{1} << 18;  // a block of Zstandard and its headers
-  return unpacked_start(first_bytes(file, std::max(size, most_stored)), size);
+  return unpacked_start(stored_bytes(file, std::max(size, most_stored)), size);
 }
 
 std::string stored_start(const fs::path& file, std::size_t size) {

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "roadbed/map/files/unpack.h"
+
 namespace roadbed::map::inline files {
 
 /// The bytes of an input: a regular file, a pipe, or standard input, which is named `-`. Of what
@@ -12,8 +14,11 @@ namespace roadbed::map::inline files {
 /// A stream, which can be read once only, is kept as long as the process runs, so that an input
 /// may be looked at before it is read, and read again. Safe to call from several threads.
 /// @throws InputError if it is missing, a folder or a device, unreadable or empty; if it is packed
-///         and damaged; if a stream, or what is packed, is larger than kMostUnpackedBytes.
-std::string read_file(const std::filesystem::path& file);
+///         and damaged, or holds more than `most_unpacked` says; if a stream is larger than
+///         kMostUnpackedBytes.
+/// @param most_unpacked  of this many packed bytes.
+std::string read_file(const std::filesystem::path& file,
+                      std::size_t (*most_unpacked)(std::size_t) = most_unpacked_of_maps);
 
 /// Its first bytes, at most `size`; fewer of what is packed, where it cannot be told.
 /// @throws InputError as read_file does.

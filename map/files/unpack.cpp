@@ -142,6 +142,7 @@ std::string unpacked(std::string_view bytes, const std::string& name, std::size_
   if (result.bytes.size() > most) {
     throw InputError({.file = name,
                       .found = fmt::format("unpacks to more than {} bytes", most),
+                      .needed = fmt::format("no more for {} packed ones", bytes.size()),
                       .remedy = "unpack it to a file first, if it is no bomb"});
   }
   if (!result.is_whole) {

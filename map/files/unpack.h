@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -9,6 +10,15 @@ namespace roadbed::map::inline files {
 /// The most bytes that a packed input may unpack to, and that are read of a stream: a few bytes can
 /// unpack to any number, and a pipe need not end. What is larger has to be a plain file.
 inline constexpr std::size_t kMostUnpackedBytes = std::size_t{1} << 30;
+
+/// The same of maps.
+constexpr std::size_t most_unpacked_of_maps(std::size_t) { return kMostUnpackedBytes; }
+
+/// The same of what takes several times its own bytes once it is read, as clouds, octrees and
+/// tables of rows do. Measured ones are packed to a third or a fifth.
+constexpr std::size_t most_unpacked_of_rows(std::size_t packed_bytes) {
+  return std::min(kMostUnpackedBytes, 40'000'000 + 8 * packed_bytes);
+}
 
 /// Whether bytes begin as gzip [RFC 1952] or Zstandard [RFC 8878] does; no format that roadbed
 /// reads begins so.

@@ -179,5 +179,26 @@ TEST_F(Streams, ThatUnpackToMoreThanTheLimitAreRefused) {
   EXPECT_EQ(run.out, "");
 }
 
+// Clouds, octrees and tables take several times their bytes: what unpacks to more than a file of
+// its size is worth is refused.
+TEST_F(Streams, OfRowsUnpackToNoMoreThanTheirSizeIsWorth) {
+  const std::string much(41'000'000, ' ');
+  const auto expect_refused = [](const ProgramRun& run) {
+    EXPECT_EQ(run.status, 3);
+    EXPECT_THAT(run.err, HasSubstr(": unpacks to more than 40"));
+    EXPECT_THAT(run.err, HasSubstr(" packed ones; unpack it to a file first"));
+  };
+  for (const std::string& file :
+       {folder_.write("scan.bin.zst", zstandard(much)),
+        folder_.write("town.bt.gz", gzipped("# Octomap OcTree binary file\n" + much))}) {
+    expect_refused(run_roadbed({"occupancy", "info", file}));
+    expect_refused(run_roadbed({"occupancy", "build", file, "-o", folder_ / "out.bt"}));
+    expect_refused(run_roadbed_reading(file, {"occupancy", "info", "-"}));
+  }
+  const std::string drive =
+      folder_.write("drive.csv.gz", gzipped("t_s,x_m,y_m,heading_rad\n" + much));
+  expect_refused(run_roadbed({"drive", "info", drive}));
+}
+
 }  // namespace
 }  // namespace roadbed::tests

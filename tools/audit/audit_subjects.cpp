@@ -206,7 +206,8 @@ std::vector<ObstacleInSource> read_moving_obstacles(const std::filesystem::path&
   const std::string start = map::read_file_start(file, 4096);
   const std::size_t sign = start.find_first_not_of(" \t\r\n");
   if (sign != std::string::npos && start[sign] == '{') return of_scenario(file, inputs);
-  return parse_obstacles_csv(map::read_file(file), map::input_name(file));
+  return parse_obstacles_csv(map::read_file(file, map::most_unpacked_of_rows),
+                             map::input_name(file));
 }
 
 }  // namespace roadbed::tools::audit

@@ -215,7 +215,8 @@ class KindOptions {
 
   std::vector<Json> pairs() const {
     std::vector<Json> pairs;
-    for (const OdRow& row : parse_od_csv(map::read_file(pairs_), map::input_name(pairs_))) {
+    for (const OdRow& row : parse_od_csv(map::read_file(pairs_, map::most_unpacked_of_rows),
+                                         map::input_name(pairs_))) {
       if (!row.fault.empty()) {
         refuse_jobs(fmt::format("{}:{}", pairs_.string(), row.line), row.fault, "mend the row");
       }

@@ -163,7 +163,7 @@ geometry::Trajectory read_drive(const fs::path& file, const DriveOptions& option
     const map::LogDrive log = map::drive_of_log(file, options.topic);
     return log.rows.empty() ? drive_of(of_log(log), name, options) : drive_of_rows(log.rows, name);
   }
-  return parse_drive(map::read_file(file), name, options);
+  return parse_drive(map::read_file(file, map::most_unpacked_of_rows), name, options);
 }
 
 geometry::Trajectory parse_drive(std::string_view bytes, const std::string& name,

@@ -36,7 +36,7 @@ PointTable parse_point_table(std::string_view bytes, const std::string& name) {
 }
 
 PointTable read_point_table(const std::filesystem::path& file) {
-  return parse_point_table(map::read_file(file), map::input_name(file));
+  return parse_point_table(map::read_file(file, map::most_unpacked_of_rows), map::input_name(file));
 }
 
 std::vector<OdRow> parse_od_csv(std::string_view bytes, const std::string& name) {

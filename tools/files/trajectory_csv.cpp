@@ -202,7 +202,8 @@ geometry::Trajectory parse_trajectory_csv(std::string_view bytes, const std::str
 }
 
 geometry::Trajectory read_trajectory_csv(const std::filesystem::path& file) {
-  return parse_trajectory_csv(map::read_file(file), map::input_name(file));
+  return parse_trajectory_csv(map::read_file(file, map::most_unpacked_of_rows),
+                              map::input_name(file));
 }
 
 std::string write_trajectory_csv(const geometry::Trajectory& drive) {

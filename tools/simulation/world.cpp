@@ -271,7 +271,8 @@ void refuse_unknown_signals(const Scenario& scenario, const map::RoadMap& road_m
 void add_boxes(const Scenario& scenario, const ObstacleMaker& maker,
                std::vector<Obstacle>& obstacles) {
   const std::filesystem::path& file = scenario.obstacles_file;
-  for (const auto& box : parse_obstacles_csv(map::read_file(file), map::input_name(file))) {
+  for (const auto& box : parse_obstacles_csv(map::read_file(file, map::most_unpacked_of_rows),
+                                             map::input_name(file))) {
     const auto same = [&](const ScenarioObstacle& own) { return own.id == box.id; };
     if (std::ranges::any_of(scenario.obstacles, same)) {
       refuse(scenario, "/obstacles_file",

@@ -80,7 +80,7 @@ PointCloud point_cloud_of(const std::filesystem::path& file, std::string_view by
 }
 
 PointCloud read_point_cloud(const std::filesystem::path& file) {
-  return point_cloud_of(file, read_file(file));
+  return point_cloud_of(file, read_file(file, most_unpacked_of_rows));
 }
 
 }  // namespace roadbed::map::occupancy::clouds

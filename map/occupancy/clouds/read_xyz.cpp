@@ -47,7 +47,11 @@ bool is_comment(std::string_view line) { return line.starts_with('#') || line.st
 class XyzParser {
  public:
   XyzParser(std::string_view bytes, const std::string& name, const CloudFilter& filter)
-      : lines_(bytes), name_(name), asked_(filter) {}
+      : lines_(bytes), name_(name), asked_(filter) {
+    constexpr std::size_t least_bytes = 6;  // of a point: "0 0 0\n"
+    const auto lines = static_cast<std::size_t>(std::ranges::count(bytes, '\n')) + 1;
+    cloud_.points_in_source.reserve(std::min(lines, bytes.size() / least_bytes + 1));
+  }
 
   RawCloud parse() {
     cloud_.format = "XYZ text";

@@ -99,7 +99,7 @@ std::vector<Eigen::Isometry3d> parse_sensor_poses(std::string_view bytes, const 
 }
 
 std::vector<Eigen::Isometry3d> read_sensor_poses(const std::filesystem::path& file) {
-  return parse_sensor_poses(read_file(file), input_name(file));
+  return parse_sensor_poses(read_file(file, most_unpacked_of_rows), input_name(file));
 }
 
 }  // namespace roadbed::map::occupancy::clouds

@@ -118,7 +118,7 @@ OccupancyMap::File OccupancyMap::build_bt(const CloudsInTurn& clouds,
 }
 
 OccupancyMap OccupancyMap::load(const std::filesystem::path& file) {
-  return parse(read_file(file), input_name(file));
+  return parse(read_file(file, most_unpacked_of_rows), input_name(file));
 }
 
 OccupancyMap OccupancyMap::parse(std::string_view bytes, const std::string& name) {
@@ -220,7 +220,7 @@ OccupancyMap load_occupancy(std::span<const std::filesystem::path> files,
                             const OccupancyOptions& options, const CloudFilter& filter) {
   std::vector<PointCloud> clouds;
   for (const std::filesystem::path& file : files) {
-    const std::string bytes = read_file(file);
+    const std::string bytes = read_file(file, most_unpacked_of_rows);
     if (!is_occupancy_file(bytes)) {
       PointCloud cloud = point_cloud_of(file, bytes, filter);
       check_is_in_metres(cloud);

@@ -95,7 +95,7 @@ std::shared_ptr<const OccupancyMap> TiledOccupancy::load(const OccupancyTile& ti
     return alive_.front().map;
   }
   const std::filesystem::path file = folder_ / tile.file;
-  const std::string bytes = read_file(file);
+  const std::string bytes = read_file(file, most_unpacked_of_rows);
   if (const std::string hash = sha256_of_bytes(bytes); hash != tile.sha256) {
     throw InputError({.file = file.string(),
                       .found = "has the SHA-256 " + hash,

@@ -113,7 +113,7 @@ std::string CloudInputs::first_name() const { return map::input_name(files_.fron
 
 std::optional<std::string> CloudInputs::only_octree() const {
   if (files_.size() != 1 || map::is_log(files_.front())) return std::nullopt;
-  std::string bytes = map::read_file(files_.front());
+  std::string bytes = map::read_file(files_.front(), map::most_unpacked_of_rows);
   return map::is_occupancy_file(bytes) ? std::optional(std::move(bytes)) : std::nullopt;
 }
 
@@ -186,7 +186,7 @@ void CloudInputs::take_log(const std::filesystem::path& log,
 
 map::PointCloud CloudInputs::cloud_of(std::size_t i,
                                       const std::vector<Eigen::Isometry3d>& poses) const {
-  const std::string bytes = map::read_file(files_[i]);
+  const std::string bytes = map::read_file(files_[i], map::most_unpacked_of_rows);
   if (map::is_occupancy_file(bytes)) refuse_octree(files_[i], for_octree_);
   map::PointCloud cloud =
       poses.empty() ? map::point_cloud_of(files_[i], bytes, filter_.filter())

@@ -212,7 +212,7 @@ class OccupancyInfoCommand : public Command {
   Json info_of_input() const {
     if (map::is_tiled_occupancy(input_)) return tiles_info(map::TiledOccupancy(input_));
     if (map::is_log(input_)) return log_info(map::LogClouds(input_, topics_), filter_.filter());
-    const std::string bytes = map::read_file(input_);
+    const std::string bytes = map::read_file(input_, map::most_unpacked_of_rows);
     return map::is_occupancy_file(bytes)
                ? octree_info(map::OccupancyMap::parse(bytes, map::input_name(input_)))
                : cloud_info(map::within_reach(map::point_cloud_of(input_, bytes, filter_.filter()),

@@ -44,7 +44,8 @@ void place_row(const map::RoadMap& road_map, const planning::Router& router,
 
 std::vector<PairRow> read_rows(const std::filesystem::path& file) {
   std::vector<PairRow> rows;
-  for (OdRow& row : parse_od_csv(map::read_file(file), map::input_name(file))) {
+  for (OdRow& row :
+       parse_od_csv(map::read_file(file, map::most_unpacked_of_rows), map::input_name(file))) {
     rows.push_back({std::move(row), {}, {}});
   }
   return rows;
