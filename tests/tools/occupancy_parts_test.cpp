@@ -146,6 +146,27 @@ TEST_F(OccupancyParts, AreCutAlongARouteOfTheirMap) {
   EXPECT_THAT(unknown.err, HasSubstr("/lanes/0/lane: lane 9 is not in the map"));
 }
 
+TEST_F(OccupancyParts, HoldTheCellsWhoseMiddleIsOnTheEdge) {
+  std::string points;
+  for (int i = -15; i < 15; ++i) {
+    for (int j = -15; j < 15; ++j) {
+      points += std::to_string(0.2 * i + 0.1) + " " + std::to_string(0.2 * j + 0.1) + " 0.1\n";
+    }
+  }
+  const std::string whole =
+      made({"build", folder_.write("grid.xyz", points), "--resolution", "0.2"}, "grid.bt");
+  const std::string outline = folder_.write("outline.geojson", R"({"type": "FeatureCollection",
+"crs": null, "features": [{"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",
+"coordinates": [[[-2.1, -1.9], [1.1, -1.9], [1.1, 0.3], [-2.1, 0.3], [-2.1, -1.9]]]}}]})");
+  const auto cells = [](const std::string& file) {
+    return std::lround(info(file).at("occupied").at("volume_m3").get<double>() / 0.008);
+  };
+  EXPECT_EQ(cells(made({"crop", whole, "--bbox=-2.1,-1.9,1.1,0.3"}, "box.bt")), 17 * 12);
+  EXPECT_EQ(cells(made({"crop", whole, "--polygon", outline}, "polygon.bt")), 17 * 12);
+  EXPECT_EQ(cells(made({"crop", whole, "--bbox=-2.0999,-1.8999,1.0999,0.2999"}, "less.bt")),
+            15 * 10);
+}
+
 TEST_F(OccupancyParts, InTilesAreComparedAsOne) {
   const std::string tiles = made({"merge", kTown, "--tiles", "100"}, "town.tiles");
   const ProgramRun same = run({"diff", tiles, kTown, "--json"});

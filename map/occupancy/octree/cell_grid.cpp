@@ -70,8 +70,8 @@ CellBox CellGrid::cells_with_middle_in(const Box3& box) const {
     const auto middles_before = [&](double at_m) {
       return (at_m - origin_in_source_[axis]) / resolution_m_ - 0.5;
     };
-    cells.from[i] = whole(std::ceil(middles_before(box.min_in_source[axis])));
-    cells.to[i] = whole(std::floor(middles_before(box.max_in_source[axis]))) + 1;
+    cells.from[i] = whole(std::ceil(middles_before(box.min_in_source[axis]) - kRounding));
+    cells.to[i] = whole(std::floor(middles_before(box.max_in_source[axis]) + kRounding)) + 1;
   }
   return cells;
 }

@@ -35,7 +35,8 @@ class CellGrid {
   /// far away.
   CellBox cells_of(const Box3& box) const;
 
-  /// The cells whose middle lies in a box; its sides may be infinitely far away.
+  /// The cells whose middle lies in a box or less than a millionth of a cell outside; its sides may
+  /// be infinitely far away.
   CellBox cells_with_middle_in(const Box3& box) const;
 
   Eigen::Vector3d corner_in_source(const CellPlace& cell) const;

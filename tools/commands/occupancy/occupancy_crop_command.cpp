@@ -12,9 +12,10 @@
 namespace roadbed::tools::inline commands::inline occupancy {
 namespace {
 
-map::Stays stays_in(const map::Region& region, const Eigen::Vector2d& middle, double radius_m) {
-  if (radius_m == 0.0) return region.contains(middle) ? map::Stays::all : map::Stays::nothing;
-  switch (region.side_of_disc(middle, radius_m)) {
+/// @param rounding_m  how far middles on an edge may be beside it.
+map::Stays stays_in(const map::Region& region, const Eigen::Vector2d& middle, double radius_m,
+                    double rounding_m) {
+  switch (region.side_of_disc(middle, radius_m + rounding_m)) {
     case map::Region::Side::inside:
       return map::Stays::all;
     case map::Region::Side::outside:
@@ -22,7 +23,7 @@ map::Stays stays_in(const map::Region& region, const Eigen::Vector2d& middle, do
     case map::Region::Side::border:
       break;
   }
-  return map::Stays::part;
+  return radius_m == 0.0 ? map::Stays::all : map::Stays::part;
 }
 
 class OccupancyCropCommand : public Command {
@@ -91,8 +92,9 @@ class OccupancyCropCommand : public Command {
     const map::Region region = region_of(occupancy);
     part.box.min_in_source.head<2>() = region.bounds().min();
     part.box.max_in_source.head<2>() = region.bounds().max();
-    part.in_plan = [region](const Eigen::Vector2d& middle, double radius_m) {
-      return stays_in(region, middle, radius_m);
+    const double rounding_m = 1e-6 * occupancy.resolution_m();
+    part.in_plan = [region, rounding_m](const Eigen::Vector2d& middle, double radius_m) {
+      return stays_in(region, middle, radius_m, rounding_m);
     };
     return part;
   }
