@@ -179,6 +179,14 @@ TEST_F(OccupancyParts, InTilesAreComparedAsOne) {
   EXPECT_GT(of_tiles.at("appeared_cells").get<int>(), 1000);
 }
 
+TEST_F(OccupancyParts, OfDifferentGridsAreToldByTheirFiles) {
+  const std::string coarse = in_utm("coarse.bt");
+  const ProgramRun refused = run({"diff", kTown, coarse});
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_THAT(refused.err,
+              HasSubstr(coarse + ": cells of 0.5 m, needs cells of 0.2 m as " + kTown));
+}
+
 TEST_F(OccupancyParts, OfNothingAreAnEmptyOctreeAndANo) {
   const std::string none = made({"crop", kTown, "--heights=500,600"}, "none.bt", 1);
   EXPECT_EQ(info(none).at("leaves"), 0);

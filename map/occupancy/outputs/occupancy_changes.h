@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
@@ -21,6 +22,8 @@ struct OccupancyChanges {
 /// Both octrees are asked at the centres of the other's cells.
 /// @throws InputError if they are of different resolution or coordinate system, or their cells are
 ///         not in one grid.
-OccupancyChanges changes_between(const OccupancyMap& before, const OccupancyMap& now);
+/// @param before_name, now_name  of their files, for messages.
+OccupancyChanges changes_between(const OccupancyMap& before, const std::string& before_name,
+                                 const OccupancyMap& now, const std::string& now_name);
 
 }  // namespace roadbed::map::occupancy::outputs

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/map/occupancy/octree/occupancy_merge.h"
 #include "roadbed/map/occupancy/octree/tiled_occupancy.h"
@@ -55,7 +56,8 @@ class OccupancyDiffCommand : public Command {
       if (!output.empty()) map::check_writable(output, force_);
     }
     const map::OccupancyMap before = octree_in(before_), now = octree_in(now_);
-    const map::OccupancyChanges changes = map::changes_between(before, now);
+    const map::OccupancyChanges changes =
+        map::changes_between(before, map::input_name(before_), now, map::input_name(now_));
     write(appeared_, changes.appeared);
     write(vanished_, changes.vanished);
     if (json_) {

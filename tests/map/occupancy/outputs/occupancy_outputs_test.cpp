@@ -223,12 +223,12 @@ TEST(OccupancyChanges, TellWhatIsFreeNowFromWhatNobodyLookedAt) {
   const Eigen::Vector3d sensor(0.25, 0.25, 0.25), near(4.25, 0.25, 0.25), far(9.25, 0.25, 0.25),
       aside(4.25, 6.25, 0.25);
   const OccupancyMap before = octree_of({near, aside}, sensor), now = octree_of({far}, sensor);
-  const OccupancyChanges changes = changes_between(before, now);
+  const OccupancyChanges changes = changes_between(before, "a.bt", now, "b.bt");
   EXPECT_EQ(places_of(changes.appeared), places_of({far}));
   EXPECT_EQ(places_of(changes.vanished), places_of({near}));
   EXPECT_EQ(changes.not_seen_again, 1u);
   EXPECT_EQ(changes.stayed, 0u);
-  const OccupancyChanges none = changes_between(before, before);
+  const OccupancyChanges none = changes_between(before, "a.bt", before, "a.bt");
   EXPECT_FALSE(none.any());
   EXPECT_EQ(none.stayed, 2u);
 }
@@ -236,7 +236,7 @@ TEST(OccupancyChanges, TellWhatIsFreeNowFromWhatNobodyLookedAt) {
 TEST(OccupancyChanges, AreRefusedBetweenCellsOfDifferentSize) {
   PointCloud cloud = cloud_of({{0.25, 0.25, 0.25}});
   const OccupancyMap fine = OccupancyMap::build({&cloud, 1}, {.resolution_m = 0.25});
-  EXPECT_THROW(changes_between(fine, octree_of({{0.25, 0.25, 0.25}})), InputError);
+  EXPECT_THROW(changes_between(fine, "a.bt", octree_of({{0.25, 0.25, 0.25}}), "b.bt"), InputError);
 }
 
 }  // namespace
