@@ -6,6 +6,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/unusable_log.h"
 #include "roadbed/map/logs/feather.h"
 #include "roadbed/map/logs/log.h"
 #include "roadbed/map/logs/log_drive.h"
@@ -169,7 +170,10 @@ geometry::Trajectory read_drive(const fs::path& file, const DriveOptions& option
 geometry::Trajectory parse_drive(std::string_view bytes, const std::string& name,
                                  const DriveOptions& options) {
   const DriveFormat* format = format_of(bytes);
-  if (format == nullptr) return parse_trajectory_csv(bytes, name);
+  if (format == nullptr) {
+    map::refuse_unusable_log(bytes, name);
+    return parse_trajectory_csv(bytes, name);
+  }
   return drive_of(format->parse(bytes, name, options), name, options);
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/unusable_log.h"
 #include "roadbed/map/logs/feather.h"
 #include "roadbed/map/occupancy/clouds/argoverse_sweeps.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
@@ -43,6 +44,7 @@ Parser choose_parser(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return parse_ply;
   if (begins_as_pcd(bytes)) return parse_pcd;
   if (is_feather(bytes)) return parse_sweep;
+  refuse_unusable_log(bytes, name);
   if (const Parser parser = parser_by_suffix(name)) return parser;
   if (begins_as_xyz(bytes)) return parse_xyz;
   refuse_cloud(name, "", "", "is of no known point cloud format",

@@ -114,6 +114,16 @@ TEST(DriveFile, IsStillATableWhereItIsOne) {
   EXPECT_EQ(parse_drive(table, "a drive", {}).points().front().heading_rad, 0.5);
 }
 
+TEST(DriveFile, SaysThatALogOfAnotherKindIsOne) {
+  EXPECT_NE(fault_of("#ROSBAG V2.0\n\x45\0", {}).find("a drive: is a bag of ROS 1, needs"),
+            std::string::npos);
+  for (const char* start : {"\x89MCAP1\r\n", "\x09MCAP0\r\n", "\x89MCAP0\n\n"}) {
+    EXPECT_NE(fault_of(start, {}).find("a drive:byte 0: is MCAP of another version, or damaged"),
+              std::string::npos);
+  }
+  EXPECT_NE(fault_of("x,MCAP\n", {}).find("column t_s"), std::string::npos);
+}
+
 TEST(PoseFrame, TakesWordsAndPlaces) {
   EXPECT_EQ(pose_frame("rear-axle", {})->x_m, 0.0);
   EXPECT_NEAR(pose_frame("centre", {})->x_m, 0.5 * 4.508 - 0.8312829, 1e-12);
