@@ -26,7 +26,8 @@ struct SurfaceRule {
   std::vector<map::LaneId> route = {};
   std::vector<geometry::Polygon> area_in_source = {};
   /// Real maps do not meet exactly: points of the map this near to each other, and to an edge, are
-  /// one, so that narrower gaps are no holes.
+  /// one, and holes are closed whose mean width, twice the area over the perimeter, is less. Slits
+  /// narrower than this are no holes, nor are round holes up to 2.5 times as wide.
   double seam_m = 0.01;
 };
 std::string_view to_string(SurfaceRule::Kind kind);
@@ -46,7 +47,8 @@ std::vector<geometry::Polygon> surface_polygons(const SurfaceRule& rule,
 struct RoadSurface {
   std::vector<geometry::Polygon> polygons_in_source;
   geometry::RegionEdges edges;
-  /// No edge is farther than this from where the map has it: what closing seams moved.
+  /// No edge is farther than this from where the map has it: what closing seams moved. Edges of
+  /// holes that were closed are not there.
   double off_by_m = 0.0;
 };
 

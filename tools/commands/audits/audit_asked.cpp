@@ -133,7 +133,9 @@ void AuditAsked::declare_road(Arguments& arguments) {
   arguments
       .add("--seam", seam_m_,
            "Points of the map this near to each other are one for --on: gaps of maps that do not "
-           "meet exactly are no holes [m]")
+           "meet exactly are no holes [m]. Slits that are narrower are closed, and round holes up "
+           "to "
+           "2.5 times as wide")
       .within(0.0, 0.1)
       .with_default();
   arguments
