@@ -75,18 +75,20 @@ PointCloud leaving_out(PointCloud cloud,
   return cloud;
 }
 
-PointCloud within_reach(PointCloud cloud, const CloudFilter& filter) {
+PointCloud within_reach(PointCloud cloud, const CloudFilter& filter, const std::string& remedy) {
   if (!filter.range_m && !filter.height_m) return cloud;
   const ValueRange height_m = filter.height_m.value_or(ValueRange());
+  const bool is_around_sensor = cloud.is_around_sensor;
   keep(cloud, [&](const Eigen::Vector3d& point, const std::optional<Eigen::Vector3d>& sensor) {
     if (!height_m.holds(point.z())) return false;
     if (!filter.range_m) return true;
     if (sensor) return filter.range_m->holds((point - *sensor).norm());
+    if (is_around_sensor) return filter.range_m->holds(point.norm());
     throw InputError({.file = cloud.name,
                       .element = "range",
                       .found = "does not say where its sensor was",
                       .needed = "the sensor's position",
-                      .remedy = "give --sensor X,Y,Z or --poses"});
+                      .remedy = remedy});
   });
   return cloud;
 }

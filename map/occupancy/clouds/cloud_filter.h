@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "roadbed/map/occupancy/clouds/point_cloud.h"
@@ -50,8 +51,12 @@ struct CloudFilter {
 PointCloud without_vehicle(PointCloud cloud, const CloudFilter& filter);
 
 /// A cloud with its points within `range_m` and `height_m`; may hold none then.
-/// @throws InputError if a range is asked for and a point's sensor is not known.
-PointCloud within_reach(PointCloud cloud, const CloudFilter& filter);
+/// @param remedy  for who asks for a range where a point's sensor is not known.
+/// @throws InputError then.
+PointCloud within_reach(PointCloud cloud, const CloudFilter& filter,
+                        const std::string& remedy =
+                            "leave the range out, or name it in the file: "
+                            "fields sensor_x, sensor_y and sensor_z");
 
 /// Applies PCL's StatisticalOutlierRemoval, then its VoxelGrid; a point that is left was measured
 /// from where the nearest one of the cloud was. PCL is opened now, not when the

@@ -29,6 +29,7 @@ struct RawCloud {
   LengthUnit unit = LengthUnit::unknown;
   std::optional<Eigen::Vector3d> sensor_in_source;
   std::vector<ScanStart> scans = {};  ///< of the points that were kept
+  bool is_around_sensor = false;      ///< as `PointCloud` says it
   std::size_t without_sensor = 0;     ///< points whose sensor position is not finite
   std::vector<std::string> notes;
 

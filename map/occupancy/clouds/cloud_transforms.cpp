@@ -37,6 +37,7 @@ PointCloud without_points(const PointCloud& cloud) {
           .unit = cloud.unit,
           .sensor_in_source = {},
           .scans = {},
+          .is_around_sensor = cloud.is_around_sensor,
           .notes = {}};
 }
 
@@ -121,6 +122,7 @@ PointCloud placed(const PointCloud& cloud, const Eigen::Isometry3d& world_from_s
   moved.points = points.points;
   moved.origin_in_source = points.origin_in_source;
   moved.sensor_in_source = world_from_sensor.translation();
+  moved.is_around_sensor = false;
   for (ScanStart& scan : moved.scans) {
     if (scan.sensor_in_source) *scan.sensor_in_source = world_from_sensor * *scan.sensor_in_source;
   }
@@ -143,6 +145,7 @@ PointCloud scaled_to_metres(const PointCloud& cloud, double factor) {
   for (ScanStart& scan : scaled.scans) {
     if (scan.sensor_in_source) *scan.sensor_in_source *= factor;
   }
+  scaled.is_around_sensor = cloud.is_around_sensor;
   scaled.stamp_ns = cloud.stamp_ns;
   scaled.drive_start_ns = cloud.drive_start_ns;
   scaled.notes = cloud.notes;

@@ -106,6 +106,7 @@ PointCloud relative_to_origin(RawCloud raw) {
   cloud.format = std::move(raw.format);
   cloud.crs = one_line(std::move(raw.crs));
   cloud.unit = raw.unit;
+  cloud.is_around_sensor = raw.is_around_sensor;
   cloud.dropped_not_finite = raw.dropped_not_finite;
   cloud.filtered_out = raw.filtered_out;
   take_sensors(raw, cloud);

@@ -6,14 +6,21 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/occupancy/clouds/message_points.h"
+#include "roadbed/map/occupancy/clouds/point_time.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
 namespace {
+
+// Frames that stand still [REP 105].
+bool is_of_world(std::string_view frame) {
+  return frame == "map" || frame == "odom" || frame == "earth" || frame == "world";
+}
 
 /// Clouds of one log, and from where each is placed.
 class CloudMessages {
@@ -24,8 +31,12 @@ class CloudMessages {
 
   void take(const LogTopic& topic, const LogMessage& message) {
     const CloudMessage cloud = parse_cloud(topic, message, file_);
-    MessagePoints read = points_of_message(cloud, frames_of(cloud.frame), filter_, file_,
-                                           topic.name + ", " + message.place);
+    const MessageFrames& frames = frames_of(cloud.frame);
+    MessagePoints read =
+        points_of_message(cloud, frames, filter_, file_, topic.name + ", " + message.place);
+    if (frames.pose_at && counts_.untaken_time_field.empty()) {
+      counts_.untaken_time_field = PointTime::untaken_field(cloud);
+    }
     counts_.points_without_pose += read.without_pose;
     counts_.points_with_unlikely_times += read.with_unlikely_times;
     counts_.not_finite += read.cloud.dropped_not_finite;
@@ -34,6 +45,7 @@ class CloudMessages {
       ++counts_.clouds;
       read.cloud.name = file_;
       read.cloud.stamp_ns = cloud.stamp_ns;
+      read.cloud.is_around_sensor = !frames.pose_at && !is_of_world(cloud.frame);
       use_(std::move(read.cloud));
     } else {
       ++(read.without_pose > 0 ? counts_.without_pose : counts_.without_point);
@@ -48,6 +60,9 @@ class CloudMessages {
     if (known != frames_of_.end()) return known->second;
     MessageFrames frames{poses_.of(frame), poses_.in_vehicle(frame)};
     if (!frames.pose_at) counts_.frames_as_they_stand.push_back(frame);
+    if (filter_.vehicle_box && !frames.in_vehicle && frame != "base_link") {
+      counts_.frames_of_vehicle_box.push_back(frame);
+    }
     return frames_of_.emplace(frame, std::move(frames)).first->second;
   }
 
@@ -133,6 +148,17 @@ std::vector<std::string> LogClouds::notes(const LogCloudCounts& counts) const {
   if (!counts.frames_as_they_stand.empty()) {
     notes.push_back(fmt::format("{}: points stand as they are, the log has no poses of {}", topic_,
                                 fmt::join(counts.frames_as_they_stand, ", ")));
+  }
+  if (!counts.frames_of_vehicle_box.empty()) {
+    notes.push_back(fmt::format(
+        "{}: the vehicle's box counts in {}, as the log does not say where base_link is", topic_,
+        fmt::join(counts.frames_of_vehicle_box, ", ")));
+  }
+  if (!counts.untaken_time_field.empty()) {
+    notes.push_back(fmt::format(
+        "{}: times of points in a field {} are not taken, as their unit is not known: all count as "
+        "measured at their message's stamp",
+        topic_, counts.untaken_time_field));
   }
   note(counts.without_point, "messages hold no finite point, or none is left");
   note(counts.without_pose, "messages lie before the first or after the last pose: left out");

@@ -28,7 +28,9 @@ struct LogCloudCounts {
   std::size_t points_without_pose = 0;  ///< in all messages
   std::size_t points_with_unlikely_times = 0;  ///< more than a second from their message's stamp
   std::size_t not_finite = 0, filtered_out = 0;
-  std::vector<std::string> frames_as_they_stand;  ///< those without poses
+  std::vector<std::string> frames_as_they_stand;   ///< those without poses
+  std::vector<std::string> frames_of_vehicle_box;  ///< not base_link, and nobody says where in it
+  std::string untaken_time_field;                  ///< of times in an unknown unit; empty: none
 };
 
 /// The clouds of one topic of a log, PointCloud2 of ROS 2, one after the other, so that no more

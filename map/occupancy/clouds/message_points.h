@@ -26,9 +26,9 @@ struct MessageFrames {
 };
 
 /// Takes the points off a message. With poses each is placed from where the sensor was when it was
-/// measured, as fields t, time, timestamp or time_stamp say: whole numbers are nanoseconds, others
-/// seconds, both from the message's stamp on, or since 1970 in s, ms, µs or ns by their magnitude;
-/// and the sensor's position is known to 2 cm. Without poses they stand as they are.
+/// measured, as the fields of PointTime say: whole numbers are nanoseconds, others seconds, both
+/// from the message's stamp on, or since 1970 in s, ms, µs or ns by their magnitude; and the
+/// sensor's position is known to 2 cm. Without poses they stand as they are.
 /// @param filter  of which attributes and the vehicle's box are looked at.
 /// @param file    and `place` are for messages.
 /// @throws InputError if it has no x, y and z, all float32 or all float64, or not what the filter

@@ -37,6 +37,9 @@ struct PointCloud {
   std::optional<Eigen::Vector3d> sensor_in_source;  ///< of the file's viewpoint, if it names one
   std::vector<ScanStart> scans;  ///< in order, from point 0 on, where the file says of each point
                                  ///< where it was measured from; then `sensor_in_source` is unused
+  /// Whether it stands in its sensor's own frame: where no sensor is said, ranges count from 0, 0,
+  /// 0. Rays are not drawn from there, as nobody says where in the world it is.
+  bool is_around_sensor = false;
   std::optional<std::int64_t> stamp_ns = {};        ///< when it was measured, if its log says so
   std::optional<std::int64_t> drive_start_ns = {};  ///< of the first pose of its log's drive
   std::vector<std::string> notes;                   ///< what the user may want to know of the file

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include "roadbed/map/logs/cloud_message.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
@@ -14,10 +15,15 @@ namespace roadbed::map::inline occupancy::inline clouds {
 ScalarType scalar_of(const PointField& field);
 
 /// When each point of a PointCloud2 message was measured, by whichever of the fields `t` (Ouster),
-/// `time` (Velodyne), `timestamp` (Hesai, Livox) and `time_stamp` (Autoware) it has.
+/// `time` (Velodyne), `timestamp` (Hesai, Livox), `time_stamp` (Autoware), `offset_time` (Livox,
+/// whole nanoseconds) and `timeOffset` (seconds) it has.
 class PointTime {
  public:
   static std::optional<PointTime> of(const CloudMessage& message);
+
+  /// A field that may hold times and is not taken, as its unit is not known: `curvature` (LOAM) or
+  /// `T`, say; empty where there is none, or times are known.
+  static std::string untaken_field(const CloudMessage& message);
 
   /// Of the point at `bytes`; may be not finite.
   double since_stamp_ns(const char* bytes) const {

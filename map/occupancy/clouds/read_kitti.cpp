@@ -43,6 +43,7 @@ RawCloud parse_kitti(std::string_view bytes, const std::string& name, const Clou
   RawCloud cloud;
   cloud.format = has_ring ? "nuScenes .pcd.bin" : "KITTI .bin";
   cloud.unit = LengthUnit::metre;
+  cloud.is_around_sensor = true;
   const FloatRecords scan{bytes.data(), bytes.size() / size, size, 0, 4, 8};
   check_is_scan(scan, name);
   const AttributeFilter attributes(filter, {"x", "y", "z", "intensity"}, name);

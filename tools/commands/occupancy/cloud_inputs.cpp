@@ -212,7 +212,7 @@ map::PointCloud CloudInputs::prepared(map::PointCloud cloud) const {
     cloud.scans.clear();
     cloud.sensor_in_source = {sensor_[0], sensor_[1], sensor_[2]};
   }
-  cloud = map::within_reach(std::move(cloud), filter_.filter());
+  cloud = map::within_reach(std::move(cloud), filter_.filter(), "give --sensor X,Y,Z or --poses");
   if (no_carving_ || !for_octree_) {
     cloud.scans.clear();
     cloud.sensor_in_source.reset();

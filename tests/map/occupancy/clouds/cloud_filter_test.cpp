@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
+#include <string>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/occupancy/clouds/cloud_transforms.h"
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/tests/support/needs_pcl.h"
 
@@ -129,6 +132,30 @@ TEST(CloudFilterOfPlaces, LeavesOutTheVehicleAndWhatIsTooFarOrTooHigh) {
   EXPECT_THROW(within_reach(cloud, near), InputError);
   cloud.sensor_in_source = Eigen::Vector3d(0, 0, 0);
   EXPECT_EQ(within_reach(cloud, near).points.size(), 1u);
+}
+
+TEST(CloudFilterOfPlaces, RangesAScanInAFrameOfItsOwnFromThere) {
+  std::string scan(2 * 4 * sizeof(float), '\0');
+  const float near_m = 2.0f, far_m = 60.0f;
+  std::memcpy(scan.data(), &near_m, sizeof near_m);
+  std::memcpy(scan.data() + 4 * sizeof(float), &far_m, sizeof far_m);
+  const CloudFilter within{.range_m = ValueRange{1, 50}};
+  const PointCloud cloud = parse_point_cloud(scan, "a.bin");
+  EXPECT_EQ(within_reach(cloud, within).points.size(), 1u);
+  EXPECT_EQ(within_reach(scaled_to_metres(cloud, 0.1), within).points.size(), 1u);
+  Eigen::Isometry3d away = Eigen::Isometry3d::Identity();
+  away.translation().x() = 100.0;
+  EXPECT_EQ(within_reach(placed(cloud, away), within).points.size(), 1u);
+}
+
+TEST(CloudFilterOfPlaces, NamesNoOptionOfOtherCommandsWhereTheSensorIsNotKnown) {
+  const PointCloud cloud = parse_point_cloud("1 0 0\n", "a.xyz");
+  try {
+    within_reach(cloud, {.range_m = ValueRange{1, 50}});
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find("--"), std::string::npos) << error.what();
+  }
 }
 
 TEST(CloudFilterOfPlaces, KeepsEachPointsSensor) {

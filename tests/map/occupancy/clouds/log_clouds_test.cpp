@@ -278,6 +278,9 @@ TEST(LogClouds, PlaceEachPointWhereTheSensorWasThen) {
         sweep<std::uint32_t>("t", 6, is_big,
                              [](int i) { return 100'000u * static_cast<unsigned>(i); }),
         sweep<float>("time", 7, is_big, [](int i) { return 1e-4f * static_cast<float>(i); }),
+        sweep<std::uint32_t>("offset_time", 6, is_big,
+                             [](int i) { return 100'000u * static_cast<unsigned>(i); }),
+        sweep<float>("timeOffset", 7, is_big, [](int i) { return 1e-4f * static_cast<float>(i); }),
         sweep<double>("timestamp", 8, is_big, [](int i) { return 1.7e9 + 0.5 + 1e-4 * i; }),
         sweep<double>("timestamp", 8, is_big, [](int i) { return 1.7e18 + 5e8 + 1e5 * i; })};
     for (const MadeCloud& cloud : sweeps) {
@@ -305,6 +308,62 @@ TEST(LogClouds, PlaceEachPointWhereTheSensorWasThen) {
       }
     }
   }
+}
+
+TEST(LogClouds, SayWhichTimesOfPointsTheyDoNotTake) {
+  const auto note_of = [](const MadeCloud& cloud) {
+    const LogClouds read(through({{"/points", kCloud, cloud.message()},
+                                  {"/odom", kOdometry, odometry(0.0, 0.0)},
+                                  {"/odom", kOdometry, odometry(1.0, 20.0)}}),
+                         "a log", {});
+    const auto notes = read.notes(read.for_each([](const PointCloud& points) {
+      for (std::size_t i = 0; i < points.points.size(); ++i) {
+        EXPECT_NEAR(points.in_source(i).x(), 15.0, 1e-5) << i;  // as at the stamp
+      }
+    }));
+    return notes.empty() ? "" : notes.front();
+  };
+  const auto zero = [](int) { return 0.0f; };
+  const auto late_ms = [](int i) { return 0.1f * static_cast<float>(i); };
+  for (const char* name : {"curvature", "T", "offset_time", "TimeStamp"}) {
+    EXPECT_EQ(note_of(sweep<float>(name, 7, false, late_ms)),
+              "/points: times of points in a field " + std::string(name) +
+                  " are not taken, as their unit is not known: all count as measured at their "
+                  "message's stamp");
+  }
+  EXPECT_EQ(note_of(sweep<float>("intensity", 7, false, late_ms)), "");
+  MadeCloud both = sweep<float>("curvature", 7, false, zero);
+  both.fields.push_back({"time", 12, 7});
+  EXPECT_EQ(note_of(both), "");
+}
+
+TEST(LogClouds, SayInWhichFrameTheVehiclesBoxCountsIfNotInItsOwn) {
+  const CloudFilter filter{.vehicle_box = Box3{{-1, -1, -1}, {1, 1, 1}}};
+  const auto notes_of = [&](const MadeCloud& cloud, const CloudFilter& asked) {
+    const LogClouds read(through(with_odometry(cloud)), "a log", {});
+    const auto notes = read.notes(read.for_each([](const PointCloud&) {}, asked));
+    return notes.empty() ? "" : notes.back();
+  };
+  MadeCloud cloud = one_ahead();
+  EXPECT_EQ(notes_of(cloud, filter), "");  // a transform says where it is
+  cloud.frame = "base_link";
+  EXPECT_EQ(notes_of(cloud, filter), "");
+  cloud.frame = "mast";
+  EXPECT_EQ(
+      notes_of(cloud, filter),
+      "/points: the vehicle's box counts in mast, as the log does not say where base_link is");
+  EXPECT_EQ(notes_of(cloud, {}), "/points: points stand as they are, the log has no poses of mast");
+}
+
+TEST(LogClouds, AreRangedFromTheirOwnFrameWhereTheyHaveNoPoses) {
+  const CloudFilter far{.range_m = ValueRange{100, 2000}};
+  MadeCloud cloud = two_points();
+  cloud.frame = "mast";
+  const auto clouds = clouds_of(with_odometry(cloud));
+  ASSERT_EQ(clouds.size(), 1u);
+  EXPECT_EQ(within_reach(clouds[0], far).points.size(), 1u);
+  cloud.frame = "map";  // no sensor is there
+  EXPECT_THROW(within_reach(clouds_of(with_odometry(cloud)).at(0), far), InputError);
 }
 
 TEST(LogClouds, LeaveOutTheVehicleInItsOwnFrame) {
