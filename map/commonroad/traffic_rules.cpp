@@ -160,9 +160,11 @@ class RuleReader {
     }
   }
 
-  // Without points of its own, a stop line lies across the end of its lanelet.
+  // Without points of its own, a stop line lies across the end of its lanelet. Where it names no
+  // light, it holds for those of the lanelet, and where it names nothing, for the signs too.
   void add_stop_line(const Lane& lane) {
-    const pugi::xml_node node = built_.elements[lane.id.index].child("stopLine");
+    const pugi::xml_node lanelet = built_.elements[lane.id.index];
+    const pugi::xml_node node = lanelet.child("stopLine");
     if (!node) return;
     StopLine line;
     line.source_id = lane.name;
@@ -175,8 +177,11 @@ class RuleReader {
       line.in_map = {end(lane.left), end(lane.right)};
     }
     line.lanes = {lane.id};
-    for (const char* child : {"trafficSignRef", "trafficLightRef"}) {
-      for (std::string& id : references(node, child)) line.signals.push_back(std::move(id));
+    const bool names_light = node.child("trafficLightRef");
+    const bool names_any = names_light || node.child("trafficSignRef");
+    line.signals = references(names_any ? node : lanelet, "trafficSignRef");
+    for (std::string& id : references(names_light ? node : lanelet, "trafficLightRef")) {
+      line.signals.push_back(std::move(id));
     }
     parts_.stop_lines.push_back(std::move(line));
   }

@@ -245,6 +245,19 @@ TEST(CommonRoad, AStopLineWithoutPointsLiesAcrossTheLaneletsEnd) {
   EXPECT_THAT(junction().stop_lines()[0].signals, ElementsAre("51"));
 }
 
+TEST(CommonRoad, AStopLineWithoutReferencesHoldsForTheLightsAndSignsOfItsLanelet) {
+  const auto held_for = [](const std::string& in_line) {
+    const std::string refs = R"(<trafficSignRef ref="8"/><trafficLightRef ref="9"/>)";
+    return parse(lanelet("1", 0, 9, 0, "<stopLine>" + in_line + "</stopLine>" + refs) +
+                 R"(<trafficSign id="7"/><trafficSign id="8"/><trafficLight id="9"/>)")
+        .stop_lines()[0]
+        .signals;
+  };
+  EXPECT_THAT(held_for(""), ElementsAre("8", "9"));
+  EXPECT_THAT(held_for(R"(<trafficSignRef ref="7"/>)"), ElementsAre("7", "9"));
+  EXPECT_THAT(held_for(R"(<trafficLightRef ref="9"/>)"), ElementsAre("9"));
+}
+
 TEST(CommonRoad, IntersectionsBecomeRegulationsAndJunctions) {
   const RoadMap road_map = junction();
   ASSERT_THAT(road_map.regulations(), SizeIs(1));
