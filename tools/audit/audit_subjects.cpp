@@ -104,7 +104,10 @@ std::vector<Argument> AuditSubjects::declare(Arguments& arguments) {
     log.excludes(other);
     for (Argument rule : of_files) rule.excludes(other);
   }
-  return of_sweeps;
+  std::vector<Argument> declared = of_sweeps;
+  declared.insert(declared.end(), of_files.begin(), of_files.end());
+  declared.insert(declared.end(), {*boxes_argument_, lane});
+  return declared;
 }
 
 std::string AuditSubjects::fault(bool has_map) const {

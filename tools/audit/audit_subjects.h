@@ -31,12 +31,14 @@ struct AuditSubject {
 /// or lane of the map, swept: `--from --to` with the rules of routes, `--lane`, `--speed --offset`.
 class AuditSubjects {
  public:
-  /// @returns what says how a line is found and swept, which drives of files do not have.
+  /// @returns what says how a drive is found, swept or read, which certificates are not about.
   std::vector<Argument> declare(Arguments& arguments);
 
   /// What is wrong with the options together; empty if nothing is.
   std::string fault(bool has_map) const;
 
+  /// Whether a start, a goal or a place between is given.
+  bool has_any_place() const { return question_.has_any_place(); }
   bool is_swept() const { return file().empty(); }
 
   /// The file or folder that was given, or is the drive of the log; may be empty.

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -107,10 +109,25 @@ class CertificateCheck {
         fmt::format("it is about {} {:.9g}{}, not {:.9g}{}", what, proven, unit, *demanded, unit));
   }
 
+  /// What options ask of something that the certificate is not about.
+  void about_no(std::string_view what,
+                std::initializer_list<std::pair<std::string_view, bool>> options) {
+    for (const auto& [name, is_given] : options) {
+      if (is_given)
+        faults_.push_back(fmt::format("it is about no {}, and {} is given", what, name));
+    }
+  }
+
   void compare_demands() {
     demand("an underside at", demands_.underside_m, file_.underside_m);
     compare_surface();
-    if (file_.parts.empty()) return;
+    if (file_.parts.empty()) {
+      about_no("occupied space", {{"--clearance", demands_.clearance_m.has_value()},
+                                  {"--least-measured", demands_.least_measured.has_value()},
+                                  {"--unknown", demands_.unknown.has_value()},
+                                  {"--ground", !demands_.ground.empty()}});
+      return;
+    }
     const planning::AuditCertificate& question = file_.parts.front();
     demand("a clearance of", demands_.clearance_m, question.clearance_m);
     demand("a margin around the vehicle of", demands_.inflate_m, question.inflate_m);
@@ -125,7 +142,9 @@ class CertificateCheck {
 
   void compare_surface() {
     if (!file_.surface) {
-      if (!demands_.on.empty()) faults_.push_back("it is about no surface, and --on is given");
+      about_no("surface", {{"--on", !demands_.on.empty()},
+                           {"--margin", demands_.margin_m.has_value()},
+                           {"--seam", demands_.seam_m.has_value()}});
       return;
     }
     const CertifiedSurface& surface = *file_.surface;
@@ -133,6 +152,7 @@ class CertificateCheck {
       faults_.push_back(fmt::format("it is about staying on {}, not {}", surface.on, demands_.on));
     }
     demand("a distance from the edge of", demands_.margin_m, surface.margin_m);
+    demand("closed seams of", demands_.seam_m, surface.seam_m);
     demand("a margin around the vehicle of", demands_.inflate_m, surface.inflate_m);
     if (surface.file) compare("surface", surface.file, {});
   }

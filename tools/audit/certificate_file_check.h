@@ -23,7 +23,7 @@ struct CertificateDemands {
   std::string ground = {};  ///< the words of `--ground`
   std::string on = {};      ///< those of `--on`
   std::optional<double> clearance_m = {}, inflate_m = {}, underside_m = {}, least_measured = {},
-                        margin_m = {};
+                        margin_m = {}, seam_m = {};
   std::optional<planning::UnknownPolicy> unknown = {};
 };
 

@@ -200,6 +200,8 @@ TEST_F(AuditCommand, ACertificateAnswersItsOwnQuestionAndNamesWhereThatIsFrom) {
            {{"--vehicle", other}, "has the hash"},
            {{"--trajectory", folder_ / "drives/hit.csv"}, "has the hash"},
            {{"--occupancy", drive}, "has the hash"},
+           {{"--on", "drivable"}, "it is about no surface, and --on is given"},
+           {{"--margin", "0"}, "it is about no surface, and --margin is given"},
            {{"--map", drive}, "it is about no map"},
            {{"--obstacles", boxes}, "it is about no obstacles"}}) {
     const ProgramRun run = check(demand);

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -131,6 +132,38 @@ TEST_F(RoadAuditCommand, WritesACertificateThatHoldsUntilItIsChanged) {
   // Another area under the same name.
   folder_.write("field.geojson", R"({"type":"Polygon","coordinates":[[[0,0],[9,0],[9,9],[0,0]]]})");
   EXPECT_EQ(audit({"--check", proof}).status, 1);
+}
+
+TEST_F(RoadAuditCommand, ChecksNoCertificateForWhatItSaysNothingOf) {
+  const std::string proof = path("proof.json"), on = "area:" + field_;
+  ASSERT_EQ(audit({"--on", on, "--trajectory", in_field_, "--certificate", proof}).status, 0);
+  const auto check = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"--check", proof});
+    return audit(words);
+  };
+  EXPECT_EQ(check({"--on", on, "--margin", "0", "--seam", "0.01"}).status, 0);
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"--rules", "all"},
+                                                {"--lane", "lane:1/0/-1"},
+                                                {"--boxes", "found"},
+                                                {"--from", "lane:1/0/-1"},
+                                                {"--rate", "10"},
+                                                {"--pose-frame", "rear-axle"}}) {
+    const ProgramRun run = check(words);
+    EXPECT_EQ(run.status, 2) << words[0];
+    EXPECT_THAT(run.err, AllOf(HasSubstr(words[0]), HasSubstr("--check"))) << words[0];
+    EXPECT_THAT(run.out, testing::IsEmpty()) << words[0];
+  }
+  for (const auto& [option, value, fault] :
+       {std::array{"--seam", "0.02", "it is about closed seams of 0.01 m, not 0.02 m"},
+        {"--clearance", "1", "it is about no occupied space, and --clearance is given"},
+        {"--unknown", "free", "it is about no occupied space, and --unknown is given"},
+        {"--ground", "0", "it is about no occupied space, and --ground is given"},
+        {"--least-measured", "1",
+         "it is about no occupied space, and --least-measured is given"}}) {
+    const ProgramRun run = check({option, value});
+    EXPECT_EQ(run.status, 1) << option;
+    EXPECT_THAT(run.out, HasSubstr(fault)) << option;
+  }
 }
 
 TEST_F(RoadAuditCommand, KeepsToARouteAsAFileHasIt) {

@@ -45,7 +45,7 @@ void AuditAsked::declare_occupancy(Arguments& arguments) {
       .ending(kCloudInputEndings);
 }
 
-void AuditAsked::declare(Arguments& arguments) {
+std::vector<Argument> AuditAsked::declare(Arguments& arguments) {
   arguments.heading("Question");
   arguments
       .add("--vehicle", vehicle_,
@@ -65,8 +65,9 @@ void AuditAsked::declare(Arguments& arguments) {
       .reads(files_named_by_scenario)
       .ending(".json .xml .csv");
   declare_question(arguments);
-  declare_road(arguments);
+  const Argument rules = declare_road(arguments);
   filter_.declare(arguments);
+  return {rules};
 }
 
 void AuditAsked::declare_question(Arguments& arguments) {
@@ -112,7 +113,7 @@ void AuditAsked::declare_question(Arguments& arguments) {
           .with_default();
 }
 
-void AuditAsked::declare_road(Arguments& arguments) {
+Argument AuditAsked::declare_road(Arguments& arguments) {
   arguments.heading("Road");
   arguments
       .add("--on", on_,
@@ -130,15 +131,15 @@ void AuditAsked::declare_road(Arguments& arguments) {
       arguments.add("--margin", margin_m_, "Least distance from the body to the edge of --on [m]")
           .within(0.0, 0.5 * planning::kSurfaceHorizon_m)
           .with_default();
-  arguments
-      .add("--seam", seam_m_,
-           "Points of the map this near to each other are one for --on: gaps of maps that do not "
-           "meet exactly are no holes [m]. Slits that are narrower are closed, and round holes up "
-           "to "
-           "2.5 times as wide")
-      .within(0.0, 0.1)
-      .with_default();
-  arguments
+  seam_argument_ =
+      arguments
+          .add("--seam", seam_m_,
+               "Points of the map this near to each other are one for --on: gaps of maps that do "
+               "not meet exactly are no holes [m]. Slits that are narrower are closed, and round "
+               "holes up to 2.5 times as wide")
+          .within(0.0, 0.1)
+          .with_default();
+  return arguments
       .add("--rules", rules_,
            "Traffic rules that count in the verdict, with commas: markings (solid ones are not "
            "crossed), direction, speed, lights (none is passed at red, as far as a CommonRoad "
@@ -211,6 +212,7 @@ CertificateDemands AuditAsked::demands(const std::filesystem::path& trajectory) 
           .underside_m = if_given(from_height_argument_, from_height_m_),
           .least_measured = if_given(least_measured_argument_, options_.least_measured),
           .margin_m = if_given(margin_argument_, margin_m_),
+          .seam_m = if_given(seam_argument_, seam_m_),
           .unknown = if_given(unknown_argument_, options_.unknown)};
 }
 

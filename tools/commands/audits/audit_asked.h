@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/audit/audit_drive.h"
@@ -20,7 +21,8 @@ namespace roadbed::tools::inline commands::inline audits {
 class AuditAsked {
  public:
   void declare_occupancy(Arguments& arguments);
-  void declare(Arguments& arguments);
+  /// @returns what certificates say nothing of.
+  std::vector<Argument> declare(Arguments& arguments);
 
   /// What is wrong with the options together; empty if nothing is.
   std::string fault() const;
@@ -62,11 +64,12 @@ class AuditAsked {
 
  private:
   void declare_question(Arguments& arguments);
-  void declare_road(Arguments& arguments);
+  /// @returns `--rules`.
+  Argument declare_road(Arguments& arguments);
 
   // To tell what a certificate has to be about from what is a default.
   std::optional<Argument> clearance_argument_, inflate_argument_, unknown_argument_,
-      least_measured_argument_, from_height_argument_, margin_argument_;
+      least_measured_argument_, from_height_argument_, margin_argument_, seam_argument_;
   std::filesystem::path occupancy_, vehicle_, map_, obstacles_;
   FilterArguments filter_;
   planning::AuditOptions options_;

@@ -36,8 +36,8 @@ class AuditCommand : public Command {
         "Prove that drives keep clear of occupied space and on the road, or show where they do "
         "not");
     asked_.declare_occupancy(arguments);
-    const std::vector<Argument> not_with_check = subjects_.declare(arguments);
-    asked_.declare(arguments);
+    std::vector<Argument> not_with_check = subjects_.declare(arguments);
+    for (const Argument& other : asked_.declare(arguments)) not_with_check.push_back(other);
     declare_outputs(arguments, not_with_check);
     arguments.require([this] { return missing(); });
     arguments.says_no_if("a drive is not clear, or the certificate does not hold");
@@ -109,6 +109,10 @@ class AuditCommand : public Command {
   }
 
   std::string check_fault() const {
+    if (subjects_.has_any_place()) {
+      return "--from, --to and --via are not for --check: a certificate is about the drive of a "
+             "file";
+    }
     const std::string filter = asked_.filter().words();
     return filter.empty() ? "" : filter + " is not for --check: a certificate is about an octree";
   }
