@@ -62,21 +62,25 @@ std::vector<Moment> moments_of(const map::RoadMap& road_map, const geometry::Tra
     throw std::invalid_argument("rules: the drive needs at least 1 point, got 0");
   const bool tells_speed = has_speeds(drive);
   std::vector<Moment> moments{moment_of(road_map, samples.front(), body)};
-  double since_m = 0.0;
+  std::size_t last = 0;  // row of the last moment
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const TrajectoryPoint &a = samples[i - 1], &b = samples[i];
-    const Vector2d way(b.x_m - a.x_m, b.y_m - a.y_m);
+    const auto way_from = [&](const TrajectoryPoint& row) -> Vector2d {
+      return b.pose().position() - row.pose().position();
+    };
+    const double row_m = way_from(a).norm();
+    const TrajectoryPoint& from = row_m < kApart_m ? samples[last] : a;
+    const Vector2d way = way_from(from);
     const double way_m = way.norm();
-    since_m += way_m;
-    if (since_m < kApart_m && i + 1 < samples.size()) continue;
-    const double steps = std::max(1.0, std::ceil(way_m / kApart_m));
+    if (way_m < kApart_m && i + 1 < samples.size()) continue;
+    const double steps = std::max(1.0, std::ceil(row_m / kApart_m));
     for (double step = 1.0; step <= steps; ++step) {
       Moment& next = moments.emplace_back(
           moment_of(road_map, geometry::interpolate(a, b, step / steps), body));
       if (way_m > 1e-3) next.way_rad = std::atan2(way.y(), way.x());
-      if (!tells_speed) next.speed_mps = way_m / (b.t_s - a.t_s);
+      if (!tells_speed) next.speed_mps = way_m / (b.t_s - from.t_s);
     }
-    since_m = 0.0;
+    last = i;
   }
   if (moments.size() > 1) {
     moments.front().way_rad = moments[1].way_rad;

@@ -55,6 +55,38 @@ TEST(RuleAudit, TellsWhereTheAxleEntersTheOncomingLane) {
   EXPECT_EQ(report.violations.front().lane, "1/0/1");
 }
 
+TEST(RuleAudit, JudgesSlowDrivesByTheirWayHoweverDenseTheirRows) {
+  const tests::MadeMap made = tests::straight_two_lane_road(100.0);
+  const auto crawl = [](double step_m) {
+    std::vector<geometry::TrajectoryPoint> rows;
+    for (int i = 0; i * std::abs(step_m) < 3.0; ++i) {
+      rows.push_back({.t_s = 0.001 * i, .x_m = 50.0 + i * step_m, .y_m = 1.75});
+    }
+    return Trajectory(rows);
+  };
+  EXPECT_EQ(audited(made, TrafficRule::direction, crawl(0.0005)).verdict, Verdict::conflict);
+  EXPECT_EQ(audited(made, TrafficRule::direction, crawl(-0.0005)).verdict, Verdict::clear);
+}
+
+TEST(RuleAudit, TakesSpeedsFromTheWayAndNotFromTheRoundingOfARow) {
+  const tests::MadeMap made = tests::straight_two_lane_road(100.0);
+  std::vector<geometry::TrajectoryPoint> rows;
+  for (int i = 0; i < 3000; ++i) {  // 13 m/s in millimetres, ±1 m/s from row to row
+    rows.push_back({.t_s = 0.001 * i, .x_m = 20.0 + 0.013 * i + 0.001 * (i % 2), .y_m = -1.75});
+  }
+  EXPECT_EQ(audited(made, TrafficRule::speed, Trajectory(rows)).verdict, Verdict::clear);
+}
+
+TEST(RuleAudit, SeesSpeedsBehindAStandstill) {
+  const Trajectory starts({{.t_s = 0.0, .x_m = 20, .y_m = -1.75},
+                           {.t_s = 9.9, .x_m = 20.1, .y_m = -1.75},
+                           {.t_s = 10.0, .x_m = 22, .y_m = -1.75}});
+  const RuleReport report =
+      audited(tests::straight_two_lane_road(100.0), TrafficRule::speed, starts);
+  ASSERT_THAT(report.violations, SizeIs(1));
+  EXPECT_EQ(report.violations.front().text, "68.4 km/h, limit 50.0 km/h");
+}
+
 TEST(RuleAudit, HoldsSpeedsAgainstTheLimitOfTheLane) {
   tests::MadeMap made = tests::straight_two_lane_road(100.0);
   const auto at = [&](double speed_mps) {
