@@ -89,27 +89,39 @@ std::vector<Moment> moments_of(const map::RoadMap& road_map, const geometry::Tra
   return moments;
 }
 
-/// Moments that follow each other and break one rule on one lane are one violation.
+/// Moments that follow each other and break one rule in one place are one violation.
 class Violations {
  public:
-  void add(double previous_s, const Violation& next) {
-    if (!all_.empty() && all_.back().to_s >= previous_s && all_.back().lane == next.lane) {
-      Violation& last = all_.back();
-      last.to_s = next.to_s;
-      if (next.over > last.over) {
-        last.at = next.at;
-        last.text = next.text;
-        last.over = next.over;
-      }
+  /// @param place  of the violation: a lane's index, or that of a crossing.
+  void add(double previous_s, std::size_t place, const Violation& next) {
+    const auto [found, is_new] = last_at_.try_emplace(place, all_.size());
+    if (is_new || all_[found->second].to_s < previous_s) {
+      found->second = all_.size();
+      all_.push_back(next);
       return;
     }
-    all_.push_back(next);
+    Violation& last = all_[found->second];
+    last.to_s = next.to_s;
+    if (next.over > last.over) {
+      last.at = next.at;
+      last.text = next.text;
+      last.over = next.over;
+    }
   }
   std::vector<Violation> take() { return std::move(all_); }
 
  private:
   std::vector<Violation> all_;
+  std::map<std::size_t, std::size_t> last_at_;
 };
+
+/// A lane's border, and how the body came over it.
+using Border = std::pair<LaneId, Side>;
+struct Crossing {
+  bool from_inside = false;  ///< the axle was on the lane's side of the border then
+  std::size_t index = 0;     ///< the same for all borders that are one line
+};
+using Crossings = std::map<Border, Crossing>;
 
 class RuleAudit {
  public:
@@ -172,7 +184,8 @@ class RuleAudit {
       };
       if (std::ranges::any_of(matches, allows)) continue;
       const Lane& lane = road_map_.lane(matches.front().place.lane);
-      found.add(previous_s(i), violation(i, lane.name, "against the lane's direction"));
+      found.add(previous_s(i), lane.id.index,
+                violation(i, lane.name, "against the lane's direction"));
     }
     report.violations = found.take();
     if (!report.unknown.empty()) report.reason = "the rear axle is in no drivable lane";
@@ -192,7 +205,7 @@ class RuleAudit {
       }
       const double over_mps = moments_[i].speed_mps - limit->limit_mps;
       if (over_mps <= least_over_mps) continue;
-      found.add(previous_s(i),
+      found.add(previous_s(i), limit->lane->id.index,
                 violation(i, limit->lane->name,
                           fmt::format("{:.1f} km/h, limit {:.1f} km/h", 3.6 * moments_[i].speed_mps,
                                       3.6 * limit->limit_mps),
@@ -203,24 +216,31 @@ class RuleAudit {
     return judged(std::move(report));
   }
 
-  static bool is_solid(const Lane& lane, Side side, double s_m) {
+  static map::MarkType mark_at(const Lane& lane, Side side, double s_m) {
     map::MarkType type = map::MarkType::none;
     for (const map::BorderMark& mark : map::marks(lane, side)) {
       if (mark.from_s_m <= s_m) type = mark.type;
     }
+    return type;
+  }
+
+  static bool forbids(map::MarkType type, bool from_right) {
     switch (type) {
       case map::MarkType::solid:
       case map::MarkType::solid_solid:
       case map::MarkType::solid_broken:
       case map::MarkType::broken_solid:
-        return !map::may_cross(type, side == Side::left);
+        return !map::may_cross(type, from_right);
       default:
         return false;
     }
   }
 
-  /// Whether the body is over a solid piece of a lane's border, not farther along than its reach.
-  bool is_over(const geometry::Rectangle& body, const Lane& lane, Side side, double s_m) const {
+  /// The markings of those pieces of a lane's border that the body is over, not farther along than
+  /// its reach; empty: it is not over the border.
+  std::set<map::MarkType> marks_under(const geometry::Rectangle& body, const Lane& lane, Side side,
+                                      double s_m) const {
+    std::set<map::MarkType> found;
     const map::LaneLine& line = map::border(lane, side);
     const auto& points = line.in_map.points();
     const auto& stations = line.station_m;
@@ -231,38 +251,87 @@ class RuleAudit {
     for (; i + 1 < points.size() && stations[i] <= s_m + reach_m; ++i) {
       const Vector2d along = points[i + 1] - points[i];
       const double length_m = along.norm();
-      if (!(length_m > 0.0) || !is_solid(lane, side, 0.5 * (stations[i] + stations[i + 1])))
-        continue;
+      if (!(length_m > 0.0)) continue;
       const geometry::Rectangle piece{.centre = 0.5 * (points[i] + points[i + 1]),
                                       .axis = along / length_m,
                                       .half_length_m = 0.5 * length_m};
-      if (geometry::distance_m(body, piece) == 0.0) return true;
+      if (geometry::distance_m(body, piece) > 0.0) continue;
+      found.insert(mark_at(lane, side, 0.5 * (stations[i] + stations[i + 1])));
     }
-    return false;
+    return found;
   }
 
+  /// Lanes outside of junctions that the body's front, axle or rear is in, and where along them.
+  std::map<LaneId, double> lanes_under(std::size_t i) const {
+    std::map<LaneId, double> lanes;
+    for (const auto* at : {&at_axle_, &at_front_, &at_rear_}) {
+      for (const LaneMatch& match : at->of(i)) {
+        if (!road_map_.lane(match.place.lane).junction) {
+          lanes.emplace(match.place.lane, match.place.s_m);
+        }
+      }
+    }
+    return lanes;
+  }
+
+  /// The crossing of a border that has begun: of itself, or of the one before or behind it.
+  std::optional<Crossing> begun(const Border& border, const Crossings& known) const {
+    const auto& [lane, side] = border;
+    if (const auto found = known.find(border); found != known.end()) return found->second;
+    const map::LaneLinks& links = road_map_.graph().of(lane);
+    for (const auto* lanes : {&links.predecessors, &links.successors}) {
+      for (const LaneId next : *lanes) {
+        if (const auto found = known.find({next, side}); found != known.end()) return found->second;
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// The crossing of the same line that has begun: of the border, or of the neighbour's facing it.
+  std::optional<Crossing> begun_of_line(const Border& border, const Crossings& known) const {
+    const auto& [lane, side] = border;
+    if (const auto own = begun(border, known)) return own;
+    const map::LaneLinks& links = road_map_.graph().of(lane);
+    const auto& other = side == Side::left ? links.left : links.right;
+    if (!other) return std::nullopt;
+    auto facing = begun({other->lane, other->same_direction ? map::opposite(side) : side}, known);
+    if (facing) facing->from_inside = !facing->from_inside;
+    return facing;
+  }
+
+  bool is_inside(const Vector2d& point, const Lane& lane, Side side) const {
+    return (map::border(lane, side).in_map.project(point).d_m > 0.0) == (side == Side::right);
+  }
+
+  /// A line is crossed from where the axle was when the body came over it, to the crossing's end.
   RuleReport markings() const {
     Violations found;
+    Crossings before;
+    std::size_t count = 0;
     for (std::size_t i = 0; i < moments_.size(); ++i) {
       const Moment& moment = moments_[i];
       const geometry::Rectangle body =
           body_.box_at({moment.axle.x(), moment.axle.y(), moment.state.heading_rad});
-      std::map<LaneId, double> lanes;
-      for (const auto* at : {&at_axle_, &at_front_, &at_rear_}) {
-        for (const LaneMatch& match : at->of(i)) {
-          if (road_map_.lane(match.place.lane).junction) continue;
-          lanes.emplace(match.place.lane, match.place.s_m);
-        }
-      }
-      for (const auto& [id, s_m] : lanes) {
+      Crossings now;
+      for (const auto& [id, s_m] : lanes_under(i)) {
         const Lane& lane = road_map_.lane(id);
         for (const Side side : {Side::left, Side::right}) {
-          if (!is_over(body, lane, side, s_m)) continue;
-          found.add(previous_s(i), violation(i, lane.name,
-                                             fmt::format("over the solid marking on its {}",
-                                                         side == Side::left ? "left" : "right")));
+          const std::set<map::MarkType> marks = marks_under(body, lane, side, s_m);
+          if (marks.empty()) continue;
+          std::optional<Crossing> crossing = begun_of_line({id, side}, before);
+          if (!crossing) crossing = begun_of_line({id, side}, now);
+          if (!crossing) crossing = {is_inside(moment.axle, lane, side), count++};
+          now[{id, side}] = *crossing;
+          const bool from_right = crossing->from_inside == (side == Side::left);
+          if (std::ranges::none_of(marks, [&](auto mark) { return forbids(mark, from_right); }))
+            continue;
+          found.add(previous_s(i), crossing->index,
+                    violation(i, lane.name,
+                              fmt::format("over the solid marking on its {}",
+                                          side == Side::left ? "left" : "right")));
         }
       }
+      before = std::move(now);
     }
     RuleReport report{.rule = TrafficRule::markings, .violations = found.take(), .unknown = {}};
     return judged(std::move(report));

@@ -16,7 +16,7 @@ namespace roadbed::planning::inline rules {
 
 /// Traffic rules that a drive may break.
 enum class TrafficRule {
-  markings,   ///< the body is over a solid marking of a lane, outside of junctions
+  markings,   ///< the body is over a marking that is solid from where it comes, not in junctions
   direction,  ///< the rear axle moves against the lane that it is in
   speed,      ///< it is faster than the lane's limit
   lights,     ///< its front passes a light that is red

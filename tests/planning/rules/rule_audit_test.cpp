@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "roadbed/tests/support/made_maps.h"
 
@@ -125,6 +128,71 @@ TEST(RuleAudit, KnowsFromWhichStationAMarkingIsSolid) {
   const RuleReport report = audited(made, TrafficRule::markings, line(10, -2.0, 60, -3.4));
   ASSERT_THAT(report.violations, SizeIs(1));
   EXPECT_EQ(report.violations.front().text, "over the solid marking on its right");
+}
+
+/// Sections of 50 m of two lanes eastwards, left ones from y = 0 to -4, with one line between them.
+tests::MadeMap lanes_beside(MarkType between) {
+  tests::ShortSections road({50.0, 50.0});
+  for (const map::LaneId id : road.left) road.made.lane(id).right_marks = {{0.0, between, "", 0.0}};
+  for (const map::LaneId id : road.right) road.made.lane(id).left_marks = {{0.0, between, "", 0.0}};
+  return road.made;
+}
+
+TEST(RuleAudit, CountsACrossingAsOneViolationOnBothSidesOfTheLine) {
+  const tests::MadeMap made = lanes_beside(MarkType::solid);
+  for (const Trajectory& drive : {line(10, -2, 40, -6), line(35, -2, 65, -6), line(35, -6, 65, -2)})
+    EXPECT_THAT(audited(made, TrafficRule::markings, drive).violations, SizeIs(1));
+  const RuleReport report = audited(made, TrafficRule::markings, line(10, -2, 40, -6));
+  // From when the front's right corner comes over the line until the rear's left one has left it.
+  const double heading_rad = std::atan2(-4, 30), step_s = 0.2 / 10.0;
+  const auto crossed_s = [&](double ahead_m, double left_m) {
+    const double up_m = ahead_m * std::sin(heading_rad) + left_m * std::cos(heading_rad);
+    return (2.0 + up_m) / -std::sin(heading_rad) / 10.0;  // the axle is then at y = -4 - up
+  };
+  EXPECT_NEAR(report.violations.front().from_s, crossed_s(kBody.front_m, kBody.right_m), step_s);
+  EXPECT_NEAR(report.violations.front().to_s, crossed_s(kBody.rear_m, kBody.left_m), step_s);
+  EXPECT_EQ(report.violations.front().lane, "0/0/-1");
+}
+
+TEST(RuleAudit, JudgesALineOfOneSideFromWhereItsCrossingBegan) {
+  const auto sideways = [](double from_y_m, double to_y_m) {  // all of the body at once
+    return Trajectory(
+        {{.t_s = 0.0, .x_m = 10, .y_m = from_y_m}, {.t_s = 8.0, .x_m = 90, .y_m = to_y_m}});
+  };
+  for (const auto& [left, right] : {std::pair(line(10, -2, 40, -6), line(10, -6, 40, -2)),
+                                    std::pair(line(35, -2, 65, -6), line(35, -6, 65, -2)),
+                                    std::pair(sideways(-2, -6), sideways(-6, -2))}) {
+    const auto verdict = [](MarkType type, const Trajectory& drive) {
+      return audited(lanes_beside(type), TrafficRule::markings, drive).verdict;
+    };
+    EXPECT_EQ(verdict(MarkType::solid_broken, left), Verdict::conflict);
+    EXPECT_EQ(verdict(MarkType::solid_broken, right), Verdict::clear);
+    EXPECT_EQ(verdict(MarkType::broken_solid, left), Verdict::clear);
+    EXPECT_EQ(verdict(MarkType::broken_solid, right), Verdict::conflict);
+  }
+}
+
+TEST(RuleAudit, JudgesTheWayBackOverALineOfOneSideByItself) {
+  const Trajectory there_and_back({{.t_s = 0.0, .x_m = 5, .y_m = -6},
+                                   {.t_s = 4.0, .x_m = 45, .y_m = -2},
+                                   {.t_s = 8.0, .x_m = 85, .y_m = -6}});
+  const RuleReport report =
+      audited(lanes_beside(MarkType::solid_broken), TrafficRule::markings, there_and_back);
+  ASSERT_THAT(report.violations, SizeIs(1));
+  EXPECT_GT(report.violations.front().from_s, 4.0);
+}
+
+TEST(RuleAudit, JudgesLinesBetweenOncomingLanesFromWhereTheirCrossingBegan) {
+  tests::MadeMap made = tests::straight_two_lane_road(100.0);
+  const auto overtakes = [&](MarkType left_to_right) {  // each lane is to the left of the other
+    made.lane(map::LaneId{0}).left_marks = {{0.0, left_to_right, "", 0.0}};
+    const MarkType right_to_left =
+        left_to_right == MarkType::solid_broken ? MarkType::broken_solid : MarkType::solid_broken;
+    made.lane(map::LaneId{1}).left_marks = {{0.0, right_to_left, "", 0.0}};
+    return audited(made, TrafficRule::markings, line(10, -1.75, 60, 1.75));
+  };
+  EXPECT_EQ(overtakes(MarkType::solid_broken).verdict, Verdict::clear);
+  EXPECT_THAT(overtakes(MarkType::broken_solid).violations, SizeIs(1));
 }
 
 /// A light at station 50 of the eastward lane: green for 4 s, then red for 6 s.
