@@ -70,7 +70,7 @@ std::optional<double> Lane::speed_limit_at_mps(double s_m) const {
 std::optional<double> Lane::least_speed_limit_mps() const {
   std::optional<double> least_mps;
   for (const SpeedLimit& limit : speed_limits) {
-    if (limit.limit_mps)
+    if (limit.limit_mps && std::isfinite(*limit.limit_mps))
       least_mps = std::min(*limit.limit_mps, least_mps.value_or(*limit.limit_mps));
   }
   return least_mps;

@@ -80,7 +80,7 @@ struct LaneOrigin {
 /// The speed limit from a station on, until the next one begins.
 struct SpeedLimit {
   double from_s_m = 0.0;
-  std::optional<double> limit_mps;  ///< none: the source says nothing
+  std::optional<double> limit_mps;  ///< infinite: there is none; empty: the source says nothing
 };
 
 /// A strip between two borders, from one section end to the next.
@@ -101,10 +101,10 @@ struct Lane {
 
   double length_m() const { return centre.in_map.length_m(); }
 
-  /// The limit that holds at a station.
+  /// The limit that holds at a station; infinite where the source says that there is none.
   std::optional<double> speed_limit_at_mps(double s_m) const;
 
-  /// The least limit anywhere along the lane.
+  /// The least limit anywhere along the lane; empty where the source says none in m/s.
   std::optional<double> least_speed_limit_mps() const;
 
   /// Place on the centreline, clamped to the lane, with its direction over ±5 cm: records of real

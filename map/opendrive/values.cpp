@@ -92,7 +92,8 @@ void begin_at_zero(std::vector<geometry::CubicRecord>& records) {
 std::optional<double> read_speed(const XmlDocument& xml, pugi::xml_node speed,
                                  std::vector<ImportDiagnostic>& remarks) {
   const std::string_view written = speed.attribute("max").value();
-  if (written.empty() || written == "no limit" || written == "undefined") return {};
+  if (written == "no limit") return std::numeric_limits<double>::infinity();
+  if (written.empty() || written == "undefined") return {};
   const std::string_view unit = speed.attribute("unit").value();
   const double to_mps = unit.empty() || unit == "m/s" ? 1.0
                         : unit == "km/h"              ? 1.0 / 3.6

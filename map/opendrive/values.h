@@ -104,9 +104,9 @@ void sort_by_station(std::vector<Record>& records) {
 /// record would be there.
 void begin_at_zero(std::vector<geometry::CubicRecord>& records);
 
-/// max with its unit (m/s if there is none); none for "no limit", "undefined" or where there is no
-/// max. A value or unit that nobody can read is remarked and counts as none: a missing speed must
-/// not make a road unusable.
+/// max with its unit (m/s if there is none); infinite for "no limit", none for "undefined" or where
+/// there is no max. A value or unit that nobody can read is remarked and counts as none: a missing
+/// speed must not make a road unusable.
 std::optional<double> read_speed(const XmlDocument& xml, pugi::xml_node speed,
                                  std::vector<ImportDiagnostic>& remarks);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -92,7 +93,9 @@ std::string limits_of(const Lane& lane) {
   for (const SpeedLimit& limit : lane.speed_limits) {
     if (!text.empty()) text += ", ";
     if (limit.from_s_m > 0.0) text += fmt::format("from {:.1f} m ", limit.from_s_m);
-    text += limit.limit_mps ? fmt::format("{:.4g} km/h", *limit.limit_mps * 3.6) : "unknown";
+    text += !limit.limit_mps                  ? "unknown"
+            : std::isfinite(*limit.limit_mps) ? fmt::format("{:.4g} km/h", *limit.limit_mps * 3.6)
+                                              : "no limit";
   }
   return text.empty() ? "unknown" : text;
 }

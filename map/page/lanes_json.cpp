@@ -132,12 +132,14 @@ class LaneColumns {
                (to->change_allowed() ? 1 : 0));
   }
 
-  // From where, and the limit in mm/s plus one; 0: none.
+  // From where, and the limit in mm/s plus one; 0: not known, -1: there is none.
   void add_speeds(const Lane& lane) {
     speeds_.counts.add(static_cast<std::int64_t>(lane.speed_limits.size()));
     for (const SpeedLimit& limit : lane.speed_limits) {
       speeds_.values.add(thousandths(limit.from_s_m));
-      speeds_.values.add(limit.limit_mps ? thousandths(*limit.limit_mps) + 1 : 0);
+      speeds_.values.add(!limit.limit_mps                  ? 0
+                         : std::isfinite(*limit.limit_mps) ? thousandths(*limit.limit_mps) + 1
+                                                           : -1);
     }
   }
 

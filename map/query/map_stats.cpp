@@ -77,7 +77,13 @@ class Values {
   std::map<Key, StatsRow> rows_;
 };
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit = std::numeric_limits<double>::max();
+
+double kmh_of(std::optional<double> limit_mps) {
+  if (!limit_mps) return kUnknown;
+  return std::isfinite(*limit_mps) ? std::round(36.0 * *limit_mps) / 10.0 : kNoLimit;
+}
 
 /// Speed limits hold from a station on, within strips too.
 class Speeds {
@@ -94,8 +100,10 @@ class Speeds {
         }
         const double to_s_m =
             next < limits.size() ? std::min(limits[next].from_s_m, strip.to_s_m) : strip.to_s_m;
-        const double kmh = limit_mps ? std::round(36.0 * *limit_mps) / 10.0 : kNoLimit;
-        StatsRow& row = values_.row(kmh, limit_mps ? fmt::format("{}", kmh) : "unknown");
+        const double kmh = kmh_of(limit_mps);
+        StatsRow& row = values_.row(kmh, kmh == kUnknown   ? "unknown"
+                                         : kmh == kNoLimit ? "no limit"
+                                                           : fmt::format("{}", kmh));
         add(row, strip, (to_s_m - from_s_m) / strip.length_m());
         row.lanes += seen.insert(kmh).second ? 1 : 0;
         from_s_m = to_s_m;

@@ -2,17 +2,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "roadbed/map/validation/validate.h"
 
 namespace roadbed::map::validation {
 namespace {
 
-bool lacks_speed(const Lane& lane) {
-  return is_drivable(lane.type) && !lane.least_speed_limit_mps();
+bool says_speed(const Lane& lane) {
+  return std::ranges::any_of(lane.speed_limits,
+                             [](const SpeedLimit& limit) { return limit.limit_mps.has_value(); });
 }
 
-bool has_speed(const Lane& lane) { return is_drivable(lane.type) && lane.least_speed_limit_mps(); }
+bool lacks_speed(const Lane& lane) { return is_drivable(lane.type) && !says_speed(lane); }
+
+bool has_speed(const Lane& lane) { return is_drivable(lane.type) && says_speed(lane); }
 
 void missing_of_roads(const RoadMap& road_map, Report& report) {
   for (const Road& road : road_map.roads()) {
@@ -56,7 +60,7 @@ void absurd_speeds(const RoadMap& road_map, const ValidateOptions& options, Repo
   for (const Lane& lane : road_map.lanes()) {
     if (lane.road || !is_drivable(lane.type)) continue;
     for (const SpeedLimit& limit : lane.speed_limits) {
-      if (!limit.limit_mps) continue;
+      if (!limit.limit_mps || std::isinf(*limit.limit_mps)) continue;
       if (*limit.limit_mps > 0.0 && *limit.limit_mps <= options.max_speed_mps) continue;
       report.add(
           "lane " + lane.name, lane.pose_at(limit.from_s_m).position(),

@@ -1,5 +1,6 @@
 #include "roadbed/planning/rules/speed_limit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -9,10 +10,14 @@ namespace roadbed::planning::inline rules {
 
 std::optional<LaneLimit> limit_along(const map::RoadMap& road_map,
                                      std::span<const map::LaneMatch> lanes, double heading_rad) {
+  const auto is_along = [&](const map::LaneMatch& match) {
+    const double turn_rad = geometry::wrap_angle(heading_rad - match.heading_rad);
+    return std::abs(turn_rad) < 0.5 * std::numbers::pi;
+  };
+  const bool is_against_all = std::ranges::none_of(lanes, is_along);
   std::optional<LaneLimit> fastest;
   for (const map::LaneMatch& match : lanes) {
-    const double turn_rad = geometry::wrap_angle(heading_rad - match.heading_rad);
-    if (!(std::abs(turn_rad) < 0.5 * std::numbers::pi)) continue;
+    if (!is_against_all && !is_along(match)) continue;
     const map::Lane& lane = road_map.lane(match.place.lane);
     const std::optional<double> limit_mps = lane.speed_limit_at_mps(match.place.s_m);
     if (limit_mps && !(fastest && fastest->limit_mps >= *limit_mps)) fastest = {*limit_mps, &lane};

@@ -2,6 +2,7 @@
 // compare it with other programs' answers.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -36,8 +37,9 @@ void print(const RoadMap& road_map, const Lane& lane) {
              R"("left":{},"right":{}}})",
              lane.name, is_drivable(lane.type) && lane.participants.has(Participant::car),
              lane.participants.has(Participant::pedestrian), lane.one_way, lane.length_m(),
-             limit_mps ? fmt::format("{}", *limit_mps) : "null", names(road_map, links.successors),
-             side(road_map, links.left), side(road_map, links.right))
+             limit_mps && std::isfinite(*limit_mps) ? fmt::format("{}", *limit_mps) : "null",
+             names(road_map, links.successors), side(road_map, links.left),
+             side(road_map, links.right))
       << '\n';
 }
 

@@ -1,5 +1,6 @@
 #include "roadbed/tools/report/motion_plots.h"
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
@@ -23,7 +24,8 @@ ReportSeries series_of(const geometry::Trajectory& drive, std::string name, Valu
 ReportSeries limits_of(const geometry::Trajectory& drive, const map::RoadMap& road_map) {
   ReportSeries limits{.name = "limit", .values = {}};
   for (const auto& limit : planning::limits_along(road_map, drive)) {
-    limits.values.push_back(limit ? limit->limit_mps : std::numeric_limits<double>::quiet_NaN());
+    const bool is_drawn = limit && std::isfinite(limit->limit_mps);
+    limits.values.push_back(is_drawn ? limit->limit_mps : std::numeric_limits<double>::quiet_NaN());
   }
   return limits;
 }

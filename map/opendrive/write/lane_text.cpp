@@ -207,8 +207,10 @@ class LanesWriter {
       const double next = i + 1 < limits.size() ? limits[i + 1].s_m : end;
       if (!limits[i].value.limit_mps || limits[i].s_m >= end - 1e-3 || next <= begin + 1e-3)
         continue;
-      add("<speed sOffset=\"{}\" max=\"{}\" unit=\"m/s\"/>",
-          short_number(std::max(0.0, limits[i].s_m - begin)), *limits[i].value.limit_mps);
+      const double limit_mps = *limits[i].value.limit_mps;
+      add("<speed sOffset=\"{}\" {}/>", short_number(std::max(0.0, limits[i].s_m - begin)),
+          std::isfinite(limit_mps) ? fmt::format("max=\"{}\" unit=\"m/s\"", limit_mps)
+                                   : "max=\"no limit\"");
     }
   }
 

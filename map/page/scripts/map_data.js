@@ -92,12 +92,13 @@ function predecessorsOf(lanes, i) {
   return listAt(lanes.predecessors, i).map((step) => i + step);
 }
 
-/** [[from s, limit in m/s or null], …] */
+/** [[from s, limit in m/s or null, infinite: there is none], …] */
 function speedsOf(lanes, i) {
   const limits = [], {starts, values} = lanes.speeds;
   // Two numbers each, but counted once.
   for (let k = starts[i]; k < starts[i + 1]; ++k) {
-    limits.push([values[2 * k] / 1000, values[2 * k + 1] === 0 ? null : (values[2 * k + 1] - 1) / 1000]);
+    const limit = values[2 * k + 1];
+    limits.push([values[2 * k] / 1000, limit === 0 ? null : limit < 0 ? Infinity : (limit - 1) / 1000]);
   }
   return limits;
 }
@@ -113,7 +114,7 @@ function marksOf(lanes, i, isRight) {
 
 /** The least limit of a lane in m/s; null if none is known. */
 function leastSpeed(lanes, i) {
-  const known = speedsOf(lanes, i).map(([, limit]) => limit).filter((limit) => limit !== null);
+  const known = speedsOf(lanes, i).map(([, limit]) => limit).filter(Number.isFinite);
   return known.length > 0 ? Math.min(...known) : null;
 }
 

@@ -75,7 +75,8 @@ function lanesAsTargets(indices, note = () => "") {
 }
 
 function speedText(limit) {
-  return limit === null ? "not known" : `${(3.6 * limit).toFixed(0)} km/h (${limit.toFixed(2)} m/s)`;
+  if (limit === null) return "not known";
+  return limit === Infinity ? "none" : `${(3.6 * limit).toFixed(0)} km/h (${limit.toFixed(2)} m/s)`;
 }
 
 function speedsText(lanes, i) {

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "roadbed/tests/support/made_road.h"
 
 namespace roadbed::map {
@@ -45,11 +47,22 @@ TEST(OpenDriveRules, ALanesOwnSpeedsBeginWhereTheySay) {
   ASSERT_EQ(lane.speed_limits.size(), 3u);
   EXPECT_EQ(lane.speed_limit_at_mps(29.0), 20.0);
   EXPECT_EQ(lane.speed_limit_at_mps(31.0), 10.0);
-  EXPECT_EQ(lane.speed_limit_at_mps(71.0), std::nullopt);
+  EXPECT_EQ(lane.speed_limit_at_mps(71.0), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(lane.least_speed_limit_mps(), 10.0);
 }
 
 TEST(OpenDriveRules, ARoadWithoutSpeedsHasNoLimits) {
   EXPECT_TRUE(lane_of(made_map(made_road({})), "A/0/-1").speed_limits.empty());
+}
+
+TEST(OpenDriveRules, NoLimitIsAnInfiniteOneAndUndefinedIsUnknown) {
+  const auto with_max = [](const std::string& max) {
+    MadeRoad road;
+    road.type = "<type s=\"0\"><speed max=\"" + max + "\" unit=\"km/h\"/></type>";
+    return lane_of(made_map(made_road(road)), "A/0/-1").speed_limit_at_mps(1.0);
+  };
+  EXPECT_EQ(with_max("no limit"), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(with_max("undefined"), std::nullopt);
 }
 
 TEST(OpenDriveRules, AnUnreadableSpeedIsRemarkedAndUnknown) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "roadbed/geometry/polygons/polygon.h"
@@ -96,15 +97,19 @@ TEST(MapStats, SpeedLimitsCountFromTheirStationOn) {
   Lane lane;
   set_borders({{0, 3, 0}, {100, 3, 0}}, {{0, 0, 0}, {100, 0, 0}}, lane);
   lane.type = LaneType::driving;
-  lane.speed_limits = {{30.0, 50.0 / 3.6}, {70.0, std::nullopt}, {90.0, 50.0 / 3.6}};
+  lane.speed_limits = {{30.0, 50.0 / 3.6},
+                       {70.0, std::nullopt},
+                       {80.0, std::numeric_limits<double>::infinity()},
+                       {90.0, 50.0 / 3.6}};
   const RoadMap road_map = one_lane(lane);
   const StatsTable speeds = map_stats(road_map, all_lanes(road_map)).tables[1];
   ASSERT_EQ(speeds.by, "speed");
-  ASSERT_EQ(speeds.rows.size(), 2u);
+  ASSERT_EQ(speeds.rows.size(), 3u);
   EXPECT_NEAR(row_of(speeds, "50")->length_m, 50.0, 1e-9);
   EXPECT_NEAR(row_of(speeds, "50")->area_m2, 150.0, 1e-9);
   EXPECT_EQ(row_of(speeds, "50")->lanes, 1u);
-  EXPECT_NEAR(row_of(speeds, "unknown")->length_m, 50.0, 1e-9);
+  EXPECT_NEAR(row_of(speeds, "unknown")->length_m, 40.0, 1e-9);
+  EXPECT_NEAR(row_of(speeds, "no limit")->length_m, 10.0, 1e-9);
 }
 
 TEST(MapStats, ClassesHoldTheirLowerBoundAndNotTheirUpper) {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "roadbed/map/validation/validate.h"
 #include "roadbed/tests/support/made_maps.h"
@@ -340,6 +341,10 @@ TEST(MapRules, SayOnceHowManyLanesWithoutARoadHaveNoSpeedLimit) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].element, "lane " + made.lane(kB).name);
   EXPECT_THAT(found[0].message, ::testing::HasSubstr("as 2 of 3 drivable lanes"));
+  const double none_mps = std::numeric_limits<double>::infinity();
+  for (const LaneId lane : {kB, kC}) made.lane(lane).speed_limits = {{0.0, none_mps}};
+  EXPECT_TRUE(of_rule(made, "speed.missing").empty()) << "it is said that there is none";
+  EXPECT_TRUE(of_rule(made, "speed.absurd").empty());
 }
 
 TEST(MapRules, SayWhereAFormatNamesItsCoordinateSystem) {

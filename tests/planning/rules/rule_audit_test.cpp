@@ -104,6 +104,16 @@ TEST(RuleAudit, HoldsSpeedsAgainstTheLimitOfTheLane) {
   EXPECT_EQ(report.violations.front().text, "54.0 km/h, limit 36.0 km/h");
   made.lane(map::LaneId{0}).speed_limits.clear();
   EXPECT_EQ(at(15.0).verdict, Verdict::unknown);
+  made.lane(map::LaneId{0}).speed_limits = {{0.0, std::numeric_limits<double>::infinity()}};
+  EXPECT_EQ(at(80.0).verdict, Verdict::clear);
+}
+
+TEST(RuleAudit, HoldsSpeedsAgainstTheLimitOfAnOncomingLaneToo) {
+  const tests::MadeMap made = tests::straight_two_lane_road(100.0);
+  const RuleReport report = audited(made, TrafficRule::speed, line(10, 1.75, 60, 1.75, 40.0));
+  ASSERT_THAT(report.violations, SizeIs(1));
+  EXPECT_EQ(report.violations.front().lane, "1/0/1");
+  EXPECT_THAT(report.unknown, IsEmpty());
 }
 
 TEST(RuleAudit, SeesTheBodyOverSolidLinesOnly) {

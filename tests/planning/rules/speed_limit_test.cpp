@@ -26,7 +26,7 @@ TEST(SpeedLimit, IsThatOfTheLaneThatIsDrivenAlong) {
   EXPECT_EQ(limits[0]->limit_mps, 10.0);
   EXPECT_EQ(limits[1]->limit_mps, 20.0);
   EXPECT_EQ(limits[1]->lane, &road_map.lane(map::LaneId{0}));
-  EXPECT_FALSE(limits[2]) << "against the lane";
+  EXPECT_EQ(limits[2]->limit_mps, 20.0) << "against the only lane";
   EXPECT_FALSE(limits[3]) << "off the road";
   EXPECT_FALSE(limits[4]) << "the lane says nothing";
 }

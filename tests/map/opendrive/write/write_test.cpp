@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <set>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/validate_file.h"
 #include "roadbed/tests/support/made_lanelet2.h"
+#include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
 
@@ -112,6 +114,18 @@ void expect_comes_back(const RoadMap& before, int minor) {
 TEST(WriteOpenDrive, ATownComesBack) {
   const RoadMap town = load_map(tests::data_folder() / "town.xodr");
   for (const int minor : {4, 8}) expect_comes_back(town, minor);
+}
+
+TEST(WriteOpenDrive, NoLimitComesBackAsNone) {
+  tests::MadeMap made = tests::straight_two_lane_road();
+  const double none_mps = std::numeric_limits<double>::infinity();
+  made.lane(LaneId{0}).speed_limits = {{0.0, 10.0}, {40.0, none_mps}};
+  const RoadMap after = parse_map(file_of(made.build()).bytes, "written.xodr");
+  std::vector<double> limits_mps;
+  for (const SpeedLimit& limit : after.lane(after.find_lane("1/0/-1").value()).speed_limits) {
+    limits_mps.push_back(limit.limit_mps.value());
+  }
+  EXPECT_EQ(limits_mps, std::vector({10.0, none_mps}));
 }
 
 TEST(WriteOpenDrive, ALanelet2CrossingComesBack) {
