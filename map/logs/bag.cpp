@@ -10,10 +10,9 @@
 
 #include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/map/files/unpack.h"
 #include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/logs/containers.h"
-#include "roadbed/map/logs/unpack_block.h"
+#include "roadbed/map/logs/message_unpacker.h"
 
 namespace roadbed::map::inline logs {
 namespace {
@@ -35,7 +34,7 @@ class BagReader {
         size_(size),
         steps_(geometry::most_steps(size / 64)),  // a row of few bytes takes fewer
         unread_(size),
-        unpacked_(most_unpacked_in_all(size)),
+        unpacker_(name_, size),
         visitor_(visitor) {
     // A file of others may hold views, triggers and columns that compute; none of it is run.
     sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
@@ -109,24 +108,19 @@ class BagReader {
     if (!unread_.spend(bytes)) refuse("", fmt::format("more rows than {} bytes can hold", size_));
   }
 
-  // Packed message by message where the bag says so; CDR never begins as Zstandard does.
   void take(const LogTopic& topic, const Statement& row) {
     const std::string_view bytes = bytes_of(row, 3);
     const std::string place = fmt::format("message {}", sqlite3_column_int64(row.get(), 2));
     const std::int64_t received_ns = sqlite3_column_int64(row.get(), 1);
     if (!is_usable_time(received_ns)) refuse(place, fmt::format("a time of {} ns", received_ns));
-    if (!is_packed(bytes)) return visitor_.take(topic, {received_ns, bytes, place});
-    const std::string message = unpacked(bytes, name_ + ":" + place, most_unpacked(size_) / 2);
-    if (!unpacked_.spend(message.size())) {
-      refuse(place, fmt::format("messages of more than {} bytes", most_unpacked_in_all(size_)));
-    }
-    visitor_.take(topic, {received_ns, message, place});
+    visitor_.take(topic, {received_ns, unpacker_.unpacked(topic, bytes, place), place});
   }
 
   Database database_;
   std::string name_;
   std::uint64_t size_;
-  geometry::WorkBudget steps_, unread_, unpacked_;
+  geometry::WorkBudget steps_, unread_;
+  MessageUnpacker unpacker_;
   const LogVisitor& visitor_;
 };
 
@@ -134,8 +128,16 @@ class BagReader {
   throw InputError({.file = name, .found = "cannot be opened as SQLite", .remedy = "copy it anew"});
 }
 
-/// Escaped as a URI needs it; nothing is ever written beside the file.
-std::string uri_of(const fs::path& file) {
+/// Rows that were not put in the file itself yet: it was not closed, or was copied meanwhile.
+std::uint64_t size_of_write_ahead_log(const fs::path& file) {
+  std::error_code none;
+  const std::uint64_t size = fs::file_size(fs::canonical(file).concat("-wal"), none);
+  return none ? 0 : size;
+}
+
+/// Escaped as a URI needs it. Nothing is ever written beside the file: no locks, and the index of
+/// a write-ahead log is in memory.
+std::string uri_of(const fs::path& file, bool has_write_ahead_log) {
   std::string uri = "file:";
   for (const char sign : fs::absolute(file).string()) {
     if (sign == '%' || sign == '?' || sign == '#') {
@@ -144,18 +146,22 @@ std::string uri_of(const fs::path& file) {
       uri += sign;
     }
   }
-  return uri + "?mode=ro&immutable=1";
+  return uri + (has_write_ahead_log ? "?mode=ro&vfs=unix-none" : "?mode=ro&immutable=1");
 }
 
 }  // namespace
 
 void read_bag_file(const fs::path& file, const LogVisitor& visitor) {
+  const std::uint64_t ahead = size_of_write_ahead_log(file);
   sqlite3* made = nullptr;
-  const int status =
-      sqlite3_open_v2(uri_of(file).c_str(), &made, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+  const int status = sqlite3_open_v2(uri_of(file, ahead > 0).c_str(), &made,
+                                     SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
   Database database(made);
   if (status != SQLITE_OK) refuse_to_open(file.string());
-  BagReader(std::move(database), file.string(), fs::file_size(file), visitor).run();
+  // Else a write-ahead log without whole transactions would be deleted.
+  sqlite3_db_config(made, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+  sqlite3_exec(made, "pragma locking_mode = exclusive", nullptr, nullptr, nullptr);
+  BagReader(std::move(database), file.string(), fs::file_size(file) + ahead, visitor).run();
 }
 
 void parse_bag(std::string_view bytes, const std::string& name, const LogVisitor& visitor) {

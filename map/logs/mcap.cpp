@@ -8,6 +8,7 @@
 #include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/logs/containers.h"
 #include "roadbed/map/logs/mcap_records.h"
+#include "roadbed/map/logs/message_unpacker.h"
 #include "roadbed/map/logs/unpack_block.h"
 
 namespace roadbed::map::inline logs {
@@ -66,7 +67,10 @@ struct Channel {
 class McapReader {
  public:
   McapReader(LogBytes& file, const LogVisitor& visitor)
-      : file_(file), visitor_(visitor), unpacked_(most_unpacked_in_all(file.size())) {}
+      : file_(file),
+        visitor_(visitor),
+        unpacked_(most_unpacked_in_all(file.size())),
+        unpacker_(file.name(), file.size()) {}
 
   void run() {
     take_bytes(kMcapStart.size());
@@ -152,7 +156,9 @@ class McapReader {
     if (!is_usable_time(received_ns)) {
       fields.refuse(fmt::format("a message of {} ns", received_ns), "a time before 2116");
     }
-    visitor_.take(found->second.topic, {received_ns, fields.rest(), fields.place()});
+    const LogTopic& topic = found->second.topic;
+    visitor_.take(topic, {received_ns, unpacker_.unpacked(topic, fields.rest(), fields.place()),
+                          fields.place()});
   }
 
   void chunk(Fields& fields) {
@@ -200,7 +206,8 @@ class McapReader {
 
   LogBytes& file_;
   const LogVisitor& visitor_;
-  geometry::WorkBudget unpacked_;
+  geometry::WorkBudget unpacked_;  // of chunks
+  MessageUnpacker unpacker_;
   std::uint64_t offset_ = 0;
   std::uint32_t crc_ = 0;
   std::string chunk_;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <fstream>
 
 namespace roadbed::tests {
 namespace {
@@ -30,16 +31,17 @@ std::uint32_t crc_of(const std::string& bytes) {
       crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-std::string packed(const std::string& bytes, const std::string& packing) {
-  if (packing.empty()) return bytes;
-  if (packing == "lz4") {
-    std::string into(LZ4F_compressFrameBound(bytes.size(), nullptr), '\0');
-    into.resize(LZ4F_compressFrame(into.data(), into.size(), bytes.data(), bytes.size(), nullptr));
-    return into;
+void insert_messages(sqlite3* file, const std::vector<McapMessage>& messages) {
+  sqlite3_stmt* insert = nullptr;
+  sqlite3_prepare_v2(file, "insert into messages(topic_id, timestamp, data) values(1, ?, ?)", -1,
+                     &insert, nullptr);
+  for (const McapMessage& message : messages) {
+    sqlite3_bind_int64(insert, 1, message.time_ns);
+    sqlite3_bind_blob64(insert, 2, message.bytes.data(), message.bytes.size(), SQLITE_TRANSIENT);
+    sqlite3_step(insert);
+    sqlite3_reset(insert);
   }
-  std::string into(ZSTD_compressBound(bytes.size()), '\0');
-  into.resize(ZSTD_compress(into.data(), into.size(), bytes.data(), bytes.size(), 3));
-  return into;
+  sqlite3_finalize(insert);
 }
 
 }  // namespace
@@ -75,6 +77,18 @@ std::string odometry_message(std::int64_t stamp_ns, double x_m, double y_m, doub
   cdr.put(speed_mps);
   for (int i = 0; i < 5 + 36; ++i) cdr.put(0.0);
   return cdr.bytes();
+}
+
+std::string packed(const std::string& bytes, const std::string& packing) {
+  if (packing.empty()) return bytes;
+  if (packing == "lz4") {
+    std::string into(LZ4F_compressFrameBound(bytes.size(), nullptr), '\0');
+    into.resize(LZ4F_compressFrame(into.data(), into.size(), bytes.data(), bytes.size(), nullptr));
+    return into;
+  }
+  std::string into(ZSTD_compressBound(bytes.size()), '\0');
+  into.resize(ZSTD_compress(into.data(), into.size(), bytes.data(), bytes.size(), 3));
+  return into;
 }
 
 std::string mcap_record(unsigned char opcode, std::string_view content) {
@@ -119,22 +133,27 @@ std::string bag_bytes(const std::string& topic, const std::string& type,
       "insert into topics values(1, '" +
       topic + "', '" + type + "', 'cdr', '')";
   sqlite3_exec(file, tables.c_str(), nullptr, nullptr, nullptr);
-  sqlite3_stmt* insert = nullptr;
-  sqlite3_prepare_v2(file, "insert into messages(topic_id, timestamp, data) values(1, ?, ?)", -1,
-                     &insert, nullptr);
-  for (const McapMessage& message : messages) {
-    sqlite3_bind_int64(insert, 1, message.time_ns);
-    sqlite3_bind_blob64(insert, 2, message.bytes.data(), message.bytes.size(), SQLITE_TRANSIENT);
-    sqlite3_step(insert);
-    sqlite3_reset(insert);
-  }
-  sqlite3_finalize(insert);
+  insert_messages(file, messages);
   sqlite3_int64 size = 0;
   unsigned char* image = sqlite3_serialize(file, "main", &size, 0);
   std::string bytes(reinterpret_cast<const char*>(image), static_cast<std::size_t>(size));
   sqlite3_free(image);
   sqlite3_close(file);
   return bytes;
+}
+
+void write_bag_with_write_ahead_log(const std::filesystem::path& file, const std::string& bag,
+                                    const std::vector<McapMessage>& messages) {
+  const std::string open = file.string() + "-open";
+  std::ofstream(open, std::ios::binary) << bag;
+  sqlite3* database = nullptr;
+  sqlite3_open(open.c_str(), &database);
+  sqlite3_exec(database, "pragma journal_mode = wal", nullptr, nullptr, nullptr);
+  insert_messages(database, messages);
+  std::filesystem::copy_file(open, file);
+  std::filesystem::copy_file(open + "-wal", file.string() + "-wal");
+  sqlite3_close(database);
+  std::filesystem::remove(open);
 }
 
 }  // namespace roadbed::tests

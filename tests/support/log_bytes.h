@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,9 @@ class CdrWriter {
 std::string odometry_message(std::int64_t stamp_ns, double x_m, double y_m, double heading_rad,
                              double speed_mps, bool is_big_endian = false);
 
+/// By "lz4" or "zstd"; as they are by "".
+std::string packed(const std::string& bytes, const std::string& packing);
+
 /// A record of MCAP.
 std::string mcap_record(unsigned char opcode, std::string_view content);
 
@@ -47,5 +51,10 @@ std::string mcap_bytes(const std::string& topic, const std::string& type,
 /// An SQLite file as rosbag2 writes it.
 std::string bag_bytes(const std::string& topic, const std::string& type,
                       const std::vector<McapMessage>& messages);
+
+/// Puts messages behind those of a bag's file, in a write-ahead log that is copied before the bag
+/// is closed. Both lie alone in the folder.
+void write_bag_with_write_ahead_log(const std::filesystem::path& file, const std::string& bag,
+                                    const std::vector<McapMessage>& messages);
 
 }  // namespace roadbed::tests

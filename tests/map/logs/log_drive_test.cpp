@@ -3,12 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tests/support/endless_rows.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/tests/support/log_bytes.h"
 
+#include "roadbed/tests/support/made_log.h"
+#include "roadbed/tests/support/program_run.h"
 namespace roadbed::map {
 namespace {
 
@@ -68,6 +72,59 @@ TEST(LogDrive, IsTheSameFromEveryContainerAndPacking) {
 
 TEST(LogDrive, IsTheSameFromEitherByteOrder) {
   expect_is_the_drive(drive_in(mcap_bytes("/odom", kOdometry, odometry(true), "zstd")));
+}
+
+TEST(LogDrive, IsTheSameFromMessagesPackedOneByOne) {
+  std::vector<McapMessage> messages = odometry();
+  for (McapMessage& message : messages) message.bytes = tests::packed(message.bytes, "zstd");
+  expect_is_the_drive(drive_in(mcap_bytes("/odom", kOdometry, messages, "")));
+  expect_is_the_drive(drive_in(bag_bytes("/odom", kOdometry, messages)));
+}
+
+TEST(LogDrive, RefusesMessagesThatTogetherUnpackToMoreThanItsBytesAreWorth) {
+  const std::string zeros = tests::packed(std::string(60'000'000, '\0'), "zstd");
+  const std::vector<McapMessage> messages(3, {0, zeros});
+  const LogVisitor all{.wants = [](const LogTopic&) { return true; },
+                       .take = [](const LogTopic&, const LogMessage&) {}};
+  for (const std::string& bytes : {mcap_bytes("/blob", "std_msgs/msg/String", messages, ""),
+                                   bag_bytes("/blob", "std_msgs/msg/String", messages)}) {
+    try {
+      parse_log(bytes, "a log", all);
+      ADD_FAILURE();
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("messages of more than"), std::string::npos);
+    }
+  }
+}
+
+TEST(LogDrive, HoldsWhatABagsWriteAheadLogHoldsAndLeavesBothAsTheyAre) {
+  const tests::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "b g#1%.db3";
+  const std::vector<McapMessage> all = odometry();
+  tests::write_bag_with_write_ahead_log(
+      file, bag_bytes("/odom", kOdometry, {all.begin(), all.begin() + 5}),
+      {all.begin() + 5, all.end()});
+  const auto stored = [&] {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(file.parent_path())) {
+      files[entry.path().string()] = read_file(entry.path());
+    }
+    return files;
+  };
+  const auto before = stored();
+  ASSERT_EQ(before.size(), 2u);
+  expect_is_the_drive(drive_of_log(file, ""));
+  const tests::TemporaryFolder other;
+  std::filesystem::create_symlink(file, other / "link.db3");
+  expect_is_the_drive(drive_of_log(other / "link.db3", ""));
+  EXPECT_EQ(stored(), before);
+  const std::filesystem::path ahead = file.string() + "-wal";
+  for (auto size = std::filesystem::file_size(ahead); size > 0; size /= 2) {  // as of a copy
+    std::filesystem::resize_file(ahead, size);
+    const auto cut = stored();
+    EXPECT_GE(drive_of_log(file, "").poses.size(), 5u);
+    EXPECT_EQ(stored(), cut) << size;
+  }
 }
 
 TEST(LogDrive, IsInOrderOfTime) {
