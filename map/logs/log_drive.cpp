@@ -13,12 +13,22 @@
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/logs/foxglove_poses.h"
 #include "roadbed/map/logs/foxglove_schemas.h"
-#include "roadbed/map/logs/transform_tree.h"
+#include "roadbed/map/logs/log_transforms.h"
 
 namespace roadbed::map::inline logs {
 namespace {
 
 constexpr const char* kBody = "base_link";
+
+/// The frame of the vehicle, of whose name there may be one in a namespace.
+std::optional<std::string> body_of(const TransformTree& tree) {
+  if (tree.has(kBody)) return kBody;
+  std::vector<std::string> names = tree.children();
+  std::erase_if(names, [](const auto& name) { return !name.ends_with(fmt::format("/{}", kBody)); });
+  if (names.size() == 1) return names.front();
+  constexpr const char* on_ground = "base_footprint";
+  return tree.has(on_ground) ? std::optional<std::string>(on_ground) : std::nullopt;
+}
 
 /// "/planning/trajectory#3"
 struct AskedTopic {
@@ -46,8 +56,8 @@ struct Candidate {
 
 class DriveSearch {
  public:
-  DriveSearch(std::string file, const std::string& topic)
-      : file_(std::move(file)), asked_(asked_topic(topic)) {}
+  DriveSearch(std::string file, const std::string& topic, std::string option)
+      : file_(std::move(file)), option_(std::move(option)), asked_(asked_topic(topic)) {}
 
   LogVisitor visitor() {
     return {
@@ -57,7 +67,9 @@ class DriveSearch {
 
   LogDrive result() {
     add_transforms();
+    if (!asked_.name.empty()) keep_asked(candidates_, asked_.name);
     keep_rows();
+    for (const auto& [name, candidate] : candidates_) check_number(name, candidate.planned);
     std::erase_if(candidates_, [](const auto& entry) {
       return entry.second.poses.empty() && entry.second.rows.empty();
     });
@@ -71,13 +83,10 @@ class DriveSearch {
       std::vector<std::string> names;
       for (const auto& [name, candidate] : candidates_) names.push_back(name);
       refuse(fmt::format("holds several drives: {}", fmt::join(names, ", ")), "one",
-             "choose it by --topic");
+             "choose it by " + option_);
     }
     auto& [name, candidate] = *candidates_.begin();
-    if (candidate.planned > 1 && asked_.number == 0) {
-      refuse(fmt::format("{} holds {} trajectories", name, candidate.planned), "one",
-             fmt::format("choose it by its number: --topic {}#{}", name, candidate.planned));
-    }
+    if (asked_.number == 0) check_is_one(name, candidate.planned);
     if (candidate.planned == 0) sort_by_stamp(candidate.poses);
     return {name, std::move(candidate.poses), std::move(candidate.rows)};
   }
@@ -88,15 +97,27 @@ class DriveSearch {
     throw InputError({.file = file_, .found = found, .needed = needed, .remedy = remedy});
   }
 
+  void check_number(const std::string& topic, std::size_t planned) const {
+    if (planned == 0 || asked_.number <= planned) return;
+    refuse_planned(topic, planned, fmt::format("at least {}", asked_.number));
+  }
+  void check_is_one(const std::string& topic, std::size_t planned) const {
+    if (planned > 1) refuse_planned(topic, planned, "one");
+  }
+  [[noreturn]] void refuse_planned(const std::string& topic, std::size_t planned,
+                                   const std::string& needed) const {
+    refuse(fmt::format("{} holds {} trajectories", topic, planned), needed,
+           fmt::format("choose one by its number: {} {}#{}", option_, topic, planned));
+  }
+
   bool wants(const LogTopic& topic) {
     topics_.push_back(fmt::format("{} ({})", topic.name, topic.type));
     const bool is_known = is_pose_type(topic.type) || is_transform_type(topic.type) ||
                           is_trajectory_type(topic.type) || topic.type == kDriveStateType;
     if (!is_known) return false;
     // Static transforms have a topic of their own, which belongs to the one that is asked for.
-    if (!asked_.name.empty() && asked_.name != topic.name && !is_transform_type(topic.type)) {
-      return false;
-    }
+    const bool is_static = is_transform_type(topic.type) && LogTransforms::is_static(topic);
+    if (!asked_.name.empty() && !is_static && !is_asked_as(topic.name, asked_.name)) return false;
     const std::string needed(encoding_of(topic.type));
     if (topic.encoding == needed) return true;
     if (needed == "protobuf") return false;  // as JSON or FlatBuffers
@@ -105,7 +126,7 @@ class DriveSearch {
   }
 
   void take(const LogTopic& topic, const LogMessage& message) {
-    if (is_transform_type(topic.type)) return take_transforms(topic, message);
+    if (is_transform_type(topic.type)) return transforms_.take(topic, message, file_);
     Candidate& candidate = candidates_[topic.name];
     if (topic.type == kDriveStateType) {
       candidate.rows.push_back(parse_drive_state(topic, message, file_));
@@ -126,14 +147,6 @@ class DriveSearch {
     candidate.poses.push_back(read.at);
   }
 
-  void take_transforms(const LogTopic& topic, const LogMessage& message) {
-    const bool is_static = topic.name.ends_with("tf_static");
-    if (!is_static) transforms_topic_ = topic.name;
-    for (const FrameTransform& transform : parse_transforms(topic, message, file_)) {
-      tree_.add(transform, is_static, file_);
-    }
-  }
-
   // Rows say all of the drive that other topics say in part.
   void keep_rows() {
     const auto has_rows = [](const auto& entry) { return !entry.second.rows.empty(); };
@@ -142,14 +155,15 @@ class DriveSearch {
   }
 
   void add_transforms() {
-    const bool is_asked = asked_.name.empty() || asked_.name == transforms_topic_;
-    if (!is_asked || transforms_topic_.empty()) return;
-    tree_.sort();
-    if (tree_.has(kBody)) {
-      candidates_[transforms_topic_].poses = tree_.poses(tree_.way_up(kBody, file_));
-    } else if (!asked_.name.empty()) {
-      refuse(fmt::format("{} has the frames {}", asked_.name, fmt::join(tree_.children(), ", ")),
-             kBody, "name a topic of poses");
+    if (!transforms_.finish(asked_.name)) return;
+    for (const auto& [topic, tree] : transforms_.trees()) {
+      if (const auto body = body_of(*tree)) {
+        const std::vector<std::string> way = tree->way_up(*body, file_, option_);
+        candidates_[tree->topic_of(way)].poses = tree->poses(way);
+      } else if (!asked_.name.empty()) {
+        refuse(fmt::format("{} has the frames {}", topic, fmt::join(tree->children(), ", ")), kBody,
+               "name a topic of poses");
+      }
     }
   }
 
@@ -176,26 +190,26 @@ class DriveSearch {
     return points;
   }
 
-  std::string file_;
+  std::string file_, option_;
   AskedTopic asked_;
   std::vector<std::string> topics_;
   std::map<std::string, Candidate> candidates_;
-  TransformTree tree_;
-  std::string transforms_topic_;
+  LogTransforms transforms_;
 };
 
 }  // namespace
 
 LogDrive drive_of_log(const GoThrough& go_through, const std::string& file,
-                      const std::string& topic) {
-  DriveSearch search(file, topic);
+                      const std::string& topic, const std::string& option) {
+  DriveSearch search(file, topic, option);
   go_through(search.visitor());
   return search.result();
 }
 
-LogDrive drive_of_log(const std::filesystem::path& path, const std::string& topic) {
+LogDrive drive_of_log(const std::filesystem::path& path, const std::string& topic,
+                      const std::string& option) {
   return drive_of_log([&](const LogVisitor& visitor) { read_log(path, visitor); }, input_name(path),
-                      topic);
+                      topic, option);
 }
 
 }  // namespace roadbed::map::logs

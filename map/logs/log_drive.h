@@ -22,13 +22,16 @@ struct LogDrive {
 using GoThrough = std::function<void(const LogVisitor&)>;
 
 /// The drive of a log: poses of Odometry, PoseStamped, PoseWithCovarianceStamped or
-/// foxglove.PoseInFrame; what transforms say of the frame base_link; a planned trajectory, NAME#K
+/// foxglove.PoseInFrame; what transforms say of the frame base_link (where there is none, of the
+/// only one of that name in a namespace, else of base_footprint); a planned trajectory, NAME#K
 /// for the K-th message, from 1; or rows of roadbed.DriveState. Planned ways without times get them
 /// from their speeds.
-/// @param topic  may be empty where only one topic could be meant, or only one has rows.
+/// @param topic   may be empty where only one topic could be meant, or only one has rows.
+/// @param option  by which the user names it, for messages.
 /// @throws InputError if there is none or there are several, which it lists.
 LogDrive drive_of_log(const GoThrough& go_through, const std::string& file,
-                      const std::string& topic);
-LogDrive drive_of_log(const std::filesystem::path& path, const std::string& topic);
+                      const std::string& topic, const std::string& option = "--topic");
+LogDrive drive_of_log(const std::filesystem::path& path, const std::string& topic,
+                      const std::string& option = "--topic");
 
 }  // namespace roadbed::map::logs

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,18 @@ struct LogTopic {
   std::string type;      ///< "nav_msgs/msg/Odometry"
   std::string encoding;  ///< of the messages: "cdr"
 };
+
+/// Whether a user who asks for a topic means this one: the slash in front may be left out.
+inline bool is_asked_as(const std::string& topic, const std::string& asked) {
+  return topic == asked || topic == "/" + asked;
+}
+
+/// Of topics leaves the one that is asked for: of that very name, else with a slash in front.
+template <class Value>
+void keep_asked(std::map<std::string, Value>& by_topic, const std::string& asked) {
+  const std::string kept = by_topic.contains(asked) ? asked : "/" + asked;
+  std::erase_if(by_topic, [&](const auto& entry) { return entry.first != kept; });
+}
 
 /// Whether differences of such times fit in 64 bits: those from 1824 to 2116.
 constexpr bool is_usable_time(std::int64_t time_ns) {

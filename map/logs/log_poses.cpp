@@ -11,12 +11,37 @@
 namespace roadbed::map::inline logs {
 namespace {
 
-constexpr const char* kVehicle = "base_link";
+constexpr const char *kVehicle = "base_link", *kOption = "--pose-topic";
 
-bool is_static(const LogTopic& topic) { return topic.name.ends_with("tf_static"); }
+/// With whatever namespace in front.
+bool is_of_vehicle(const std::string& frame) {
+  const std::string name = frame.substr(frame.rfind('/') + 1);
+  return name == kVehicle || name == "base_footprint";
+}
 
-PoseAt along(const TransformTree& tree, std::vector<std::string> way) {
-  return [&tree, way = std::move(way)](std::int64_t stamp_ns) { return tree.at(way, stamp_ns); };
+using Way = std::vector<std::string>;
+
+/// From a frame up to another one; none where that is not above it.
+std::optional<Way> way_to(const TransformTree& tree, const std::string& frame,
+                          const std::string& top, const std::string& file) {
+  Way way = tree.way_up(frame, file, kOption, top);
+  const std::string& reached = way.empty() ? frame : tree.parent_of(way.back());
+  return reached == top ? std::optional(std::move(way)) : std::nullopt;
+}
+
+PoseAt along(LogTransforms::Tree tree, Way way) {
+  return [tree = std::move(tree), way = std::move(way)](std::int64_t stamp_ns) {
+    return tree->at(way, stamp_ns);
+  };
+}
+
+PoseAt along(const TransformTree& above, Way up, LogTransforms::Tree below, Way way) {
+  return [&above, up = std::move(up), in_child = along(std::move(below), std::move(way))](
+             std::int64_t stamp_ns) -> std::optional<Eigen::Isometry3d> {
+    const auto child = above.at(up, stamp_ns), frame = in_child(stamp_ns);
+    if (!child || !frame) return std::nullopt;
+    return *child * *frame;
+  };
 }
 
 }  // namespace
@@ -26,59 +51,75 @@ LogPoses::LogPoses(std::string file, std::string topic)
 
 bool LogPoses::wants(const LogTopic& topic) const {
   if (topic.encoding != encoding_of(topic.type)) return false;
-  if (is_transform_type(topic.type) && is_static(topic)) return true;
-  if (!is_transform_type(topic.type) && !is_pose_type(topic.type)) return false;
-  return topic_.empty() || topic_ == topic.name;
+  if (is_transform_type(topic.type)) return true;
+  return is_pose_type(topic.type) && (topic_.empty() || is_asked_as(topic.name, topic_));
 }
 
 void LogPoses::take(const LogTopic& topic, const LogMessage& message) {
-  if (is_transform_type(topic.type)) {
-    for (const FrameTransform& transform : parse_transforms(topic, message, file_)) {
-      transforms_.add(transform, is_static(topic), file_);
-    }
-    return;
-  }
+  if (is_transform_type(topic.type)) return transforms_.take(topic, message, file_);
   const PoseMessage read = parse_pose(topic, message, file_);
-  by_topic_[topic.name].add({read.frame, read.child.empty() ? kVehicle : read.child, read.at},
-                            false, file_);
+  PoseTopic& poses = by_topic_[topic.name];
+  poses.child = read.child.empty() ? kVehicle : read.child;
+  poses.above.add({read.frame, poses.child, read.at}, topic.name, false);
 }
 
 void LogPoses::finish() {
-  transforms_.sort();
-  for (auto& [name, tree] : by_topic_) {
-    tree.sort();
-    tree.add_static_of(transforms_);
+  transforms_count_ = transforms_.finish(topic_);
+  if (!topic_.empty()) keep_asked(by_topic_, topic_);
+  for (auto& [name, poses] : by_topic_) {
+    poses.above.sort();
+    TransformTree further = transforms_.static_of(name);
+    further.remove(poses.child);  // the topic says where that is
+    poses.above.merge(std::move(further));
+    poses.below = transforms_.below(name);
   }
 }
 
-PoseAt LogPoses::of(const std::string& frame) const {
-  std::vector<std::string> way = transforms_.way_up(frame, file_);
-  if (transforms_.leads_to_world(way)) return along(transforms_, std::move(way));
-  PoseAt found;
-  std::vector<std::string> names;
-  for (const auto& [name, tree] : by_topic_) {
-    way = tree.way_up(frame, file_);
-    if (!tree.leads_to_world(way)) continue;
-    names.push_back(name);
-    found = along(tree, std::move(way));
+bool LogPoses::ends_below_poses(const std::string& top) const {
+  return is_of_vehicle(top) || std::ranges::any_of(by_topic_, [&](const auto& entry) {
+           return entry.second.child == top;
+         });
+}
+
+std::vector<LogPoses::Source> LogPoses::sources_of(const std::string& frame) const {
+  std::vector<Source> found;
+  for (const auto& [name, tree] : transforms_.trees()) {
+    if (!transforms_count_) break;
+    Way way = tree->way_up(frame, file_, kOption);
+    if (!tree->leads_to_world(way) || ends_below_poses(tree->parent_of(way.back()))) continue;
+    found.push_back({tree->topic_of(way), tree, along(tree, std::move(way))});
   }
-  if (names.size() < 2) return found;
+  if (!found.empty()) return found;
+  for (const auto& [name, poses] : by_topic_) {
+    std::optional<Way> way = way_to(*poses.below, frame, poses.child, file_);
+    if (!way) continue;
+    Way up = poses.above.way_up(poses.child, file_, kOption);
+    found.push_back(
+        {name, poses.below, along(poses.above, std::move(up), poses.below, std::move(*way))});
+  }
+  return found;
+}
+
+PoseAt LogPoses::of(const std::string& frame) const {
+  const std::vector<Source> sources = sources_of(frame);
+  if (sources.empty()) return {};
+  if (sources.size() == 1) return sources.front().at;
+  std::vector<std::string> names;
+  for (const Source& source : sources) names.push_back(source.topic);
   throw InputError({.file = file_,
                     .element = "frame " + frame,
                     .found = fmt::format("{} say where it was", fmt::join(names, ", ")),
                     .needed = "one topic",
-                    .remedy = "choose it by --pose-topic"});
+                    .remedy = fmt::format("choose it by {}", kOption)});
 }
 
 PoseAt LogPoses::in_vehicle(const std::string& frame) const {
-  std::vector<std::string> way = transforms_.way_up(frame, file_);
-  const auto vehicle = std::ranges::find(way, kVehicle);
-  if (vehicle == way.begin()) return {};  // it is that frame itself
-  if (vehicle == way.end() && (way.empty() || transforms_.parent_of(way.back()) != kVehicle)) {
-    return {};
-  }
-  way.erase(vehicle, way.end());
-  return along(transforms_, std::move(way));
+  const std::vector<Source> sources = sources_of(frame);
+  const auto& trees = transforms_.trees();
+  if (frame == kVehicle || (sources.empty() && trees.size() != 1)) return {};
+  const LogTransforms::Tree tree = sources.empty() ? trees.begin()->second : sources.front().below;
+  std::optional<Way> way = way_to(*tree, frame, kVehicle, file_);
+  return way ? along(tree, std::move(*way)) : PoseAt();
 }
 
 }  // namespace roadbed::map::logs

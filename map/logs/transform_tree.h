@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/map/logs/log_contents.h"
 #include "roadbed/map/logs/pose_messages.h"
 
 namespace roadbed::map::inline logs {
@@ -17,20 +18,29 @@ namespace roadbed::map::inline logs {
 ///
 class TransformTree {
  public:
-  /// @param is_static  holds for all times. @throws InputError if a frame gets a second parent.
-  void add(const FrameTransform& transform, bool is_static, const std::string& file);
+  /// @param topic      that says it.
+  /// @param is_static  holds for all times.
+  void add(const FrameTransform& transform, const std::string& topic, bool is_static);
 
   /// Puts the poses of each frame in order of time; of several at one time the first stays.
   void sort();
 
+  /// Takes the frames from another one that it does not have.
+  void merge(TransformTree other);
+
+  void remove(const std::string& child) { edges_.erase(child); }
   bool has(const std::string& child) const { return edges_.contains(child); }
 
-  /// From a frame up to `map`, or to the uppermost frame: names of the children on the way.
-  /// @throws InputError if frames stand in each other in a circle.
-  std::vector<std::string> way_up(const std::string& child, const std::string& file) const;
+  /// From a frame up to `top`, to `map` or to the uppermost frame: names of the children on the
+  /// way.
+  /// @param file    and `option`, which chooses a topic, are for messages.
+  /// @throws InputError if a frame on it has two parents, or they stand in each other in a circle.
+  std::vector<std::string> way_up(const std::string& child, const std::string& file,
+                                  const std::string& option, const std::string& top = "map") const;
 
   /// Where the lowest frame of a way is, in the uppermost: places linear, turns by slerp between
-  /// stamps; none before the first or after the last one.
+  /// stamps; none before the first, after the last one, and in gaps that are longer than three
+  /// median intervals and than 0.25 s.
   std::optional<Eigen::Isometry3d> at(const std::vector<std::string>& way,
                                       std::int64_t stamp_ns) const;
 
@@ -41,8 +51,9 @@ class TransformTree {
   /// `map`.
   bool leads_to_world(const std::vector<std::string>& way) const;
 
-  /// Takes the transforms that hold for all times from another one.
-  void add_static_of(const TransformTree& other);
+  /// The topic of the lowest frame of a way that moves, else of the lowest.
+  /// @pre the way is not empty.
+  const std::string& topic_of(const std::vector<std::string>& way) const;
 
   /// @pre has(child).
   const std::string& parent_of(const std::string& child) const { return edges_.at(child).parent; }
@@ -51,10 +62,15 @@ class TransformTree {
 
  private:
   struct Edge {
-    std::string parent;
+    std::string topic, parent, other_parent;  ///< the last: of a frame that is said to have two
     bool is_static = false;
     std::vector<TimedPose> poses;
+    std::vector<LogGap> gaps;
+
+    std::optional<Eigen::Isometry3d> at(std::int64_t stamp_ns) const;
   };
+  std::vector<std::string>::const_iterator lowest_moving(const std::vector<std::string>& way) const;
+
   std::map<std::string, Edge> edges_;
 };
 

@@ -114,8 +114,10 @@ void LogClouds::look_through(const std::string& asked) {
     refuse("holds clouds of several topics: " + listed, "choose it by --topic");
   }
   topic_ = asked.empty() ? names.front() : asked;
-  if (std::ranges::find(names, topic_) == names.end()) {
-    refuse(fmt::format("holds no clouds of topic {}, but of {}", topic_, listed),
+  const auto is_there = [&] { return std::ranges::find(names, topic_) != names.end(); };
+  if (!is_there()) topic_ = "/" + asked;
+  if (!is_there()) {
+    refuse(fmt::format("holds no clouds of topic {}, but of {}", asked, listed),
            "choose it by --topic");
   }
 }
@@ -161,8 +163,10 @@ std::vector<std::string> LogClouds::notes(const LogCloudCounts& counts) const {
         topic_, counts.untaken_time_field));
   }
   note(counts.without_point, "messages hold no finite point, or none is left");
-  note(counts.without_pose, "messages lie before the first or after the last pose: left out");
-  note(counts.points_without_pose, "points lie before the first or after the last pose: left out");
+  note(counts.without_pose,
+       "messages lie before the first pose, after the last or in a gap of them: left out");
+  note(counts.points_without_pose,
+       "points lie before the first pose, after the last or in a gap of them: left out");
   note(counts.points_with_unlikely_times,
        "points say a time more than 1 s from their message's: taken to be measured at its stamp");
   return notes;

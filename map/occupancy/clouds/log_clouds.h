@@ -35,7 +35,8 @@ struct LogCloudCounts {
 
 /// The clouds of one topic of a log, PointCloud2 of ROS 2, one after the other, so that no more
 /// than one is in memory. Each is placed by the poses of the same log, point by point where points
-/// have times, and carves from its sensor; without poses of its frame it stands as it is.
+/// have times, and carves from its sensor; without poses of its frame it stands as it is. What lies
+/// before the first pose, after the last or in a gap of them is left out.
 class LogClouds {
  public:
   /// Goes through the log once, for its poses.

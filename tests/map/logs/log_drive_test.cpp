@@ -5,24 +5,28 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/tests/support/endless_rows.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/tests/support/endless_rows.h"
 #include "roadbed/tests/support/log_bytes.h"
-
 #include "roadbed/tests/support/made_log.h"
 #include "roadbed/tests/support/program_run.h"
+
 namespace roadbed::map {
 namespace {
 
 using tests::bag_bytes;
 using tests::CdrWriter;
+using tests::kOdometry;
+using tests::kTransforms;
 using tests::mcap_bytes;
 using tests::McapMessage;
 using tests::odometry_message;
+using tests::Recorded;
+using tests::transform_message;
 
-constexpr const char* kOdometry = "nav_msgs/msg/Odometry";
 constexpr std::int64_t kStart_ns = 1'700'000'000'123'456'789;
 
 std::vector<McapMessage> odometry(bool is_big_endian = false) {
@@ -68,10 +72,6 @@ TEST(LogDrive, IsTheSameFromEveryContainerAndPacking) {
   }
   expect_is_the_drive(drive_in(mcap_bytes("/odom", kOdometry, odometry(), "", false)));
   expect_is_the_drive(drive_in(bag_bytes("/odom", kOdometry, odometry())));
-}
-
-TEST(LogDrive, IsTheSameFromEitherByteOrder) {
-  expect_is_the_drive(drive_in(mcap_bytes("/odom", kOdometry, odometry(true), "zstd")));
 }
 
 TEST(LogDrive, IsTheSameFromMessagesPackedOneByOne) {
@@ -125,6 +125,10 @@ TEST(LogDrive, HoldsWhatABagsWriteAheadLogHoldsAndLeavesBothAsTheyAre) {
     EXPECT_GE(drive_of_log(file, "").poses.size(), 5u);
     EXPECT_EQ(stored(), cut) << size;
   }
+}
+
+TEST(LogDrive, IsTheSameFromEitherByteOrder) {
+  expect_is_the_drive(drive_in(mcap_bytes("/odom", kOdometry, odometry(true), "zstd")));
 }
 
 TEST(LogDrive, IsInOrderOfTime) {
@@ -189,17 +193,6 @@ TEST(LogDrive, ListsTopicsWhereNoneIsADrive) {
   EXPECT_NE(fault.find("/chatter (std_msgs/msg/String)"), std::string::npos) << fault;
 }
 
-/// One of `/tf`: a frame in its parent at a time.
-std::string transform_message(std::int64_t stamp_ns, const char* parent, const char* child,
-                              double x_m, double heading_rad) {
-  CdrWriter cdr;
-  cdr.put(std::uint32_t{1}).put(static_cast<std::int32_t>(stamp_ns / 1'000'000'000));
-  cdr.put(static_cast<std::uint32_t>(stamp_ns % 1'000'000'000)).text(parent).text(child);
-  cdr.put(x_m).put(0.0).put(0.0);
-  cdr.put(0.0).put(0.0).put(std::sin(0.5 * heading_rad)).put(std::cos(0.5 * heading_rad));
-  return cdr.bytes();
-}
-
 TEST(LogDrive, ChainsTransformsBetweenStamps) {
   std::vector<McapMessage> messages;
   for (int i = 0; i <= 10; ++i) {
@@ -208,12 +201,98 @@ TEST(LogDrive, ChainsTransformsBetweenStamps) {
   }
   messages.push_back({0, transform_message(kStart_ns, "map", "odom", 100.0, 0.0)});
   messages.push_back({0, transform_message(kStart_ns + 500'000'000, "map", "odom", 200.0, 0.0)});
-  const LogDrive drive = drive_in(bag_bytes("/tf", "tf2_msgs/msg/TFMessage", messages));
+  const LogDrive drive = drive_in(bag_bytes("/tf", kTransforms, messages));
   ASSERT_EQ(drive.poses.size(), 6u) << "odom is known in the map for half a second";
   for (int i = 0; i < 6; ++i) {
     EXPECT_NEAR(drive.poses[static_cast<std::size_t>(i)].pose.translation().x(),
                 100.0 + 20.0 * i + 1.0 * i, 1e-9);
   }
+}
+
+/// `x_m` ahead of its parent at the start, and a metre more half a second later.
+void add_moving(std::vector<Recorded>& log, const std::string& topic, const std::string& parent,
+                const std::string& child, double x_m) {
+  log.push_back({topic, kTransforms, transform_message(kStart_ns, parent, child, x_m, 0.0)});
+  log.push_back({topic, kTransforms,
+                 transform_message(kStart_ns + 500'000'000, parent, child, x_m + 1.0, 0.0)});
+}
+
+LogDrive drive_in(const std::vector<Recorded>& log, const std::string& topic = {}) {
+  return drive_of_log(tests::through(log, kStart_ns), "a log", topic);
+}
+
+std::string fault_of(const std::vector<Recorded>& log, const std::string& topic = {}) {
+  try {
+    drive_in(log, topic);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expect_starts_at(const LogDrive& drive, const std::string& topic, double x_m) {
+  EXPECT_EQ(drive.topic, topic);
+  ASSERT_EQ(drive.poses.size(), 2u);
+  EXPECT_NEAR(drive.poses[0].pose.translation().x(), x_m, 1e-12);
+  EXPECT_NEAR(drive.poses[1].pose.translation().x(), x_m + 1.0, 1e-12);
+}
+
+TEST(LogDrive, OfEachRobotIsByItsOwnTransforms) {
+  std::vector<Recorded> log;
+  for (const auto& [robot, x_m] : {std::pair("/robot1", 10.0), std::pair("/robot2", 1000.0)}) {
+    const std::string name(robot);
+    add_moving(log, name + "/tf", "odom", "base_link", x_m);
+    log.push_back(
+        {name + "/tf_static", kTransforms, transform_message(0, "map", "odom", x_m, 0.0)});
+  }
+  EXPECT_NE(fault_of(log).find("/robot1/tf, /robot2/tf"), std::string::npos) << fault_of(log);
+  expect_starts_at(drive_in(log, "/robot1/tf"), "/robot1/tf", 20.0);
+  expect_starts_at(drive_in(log, "/robot2/tf"), "/robot2/tf", 2000.0);
+}
+
+TEST(LogDrive, IsByTransformsOfSeveralTopicsWhereNoFrameStandsInTwo) {
+  std::vector<Recorded> log;
+  add_moving(log, "/body", "odom", "base_link", 10.0);
+  log.push_back({"/tf_static", kTransforms, transform_message(0, "map", "odom", 300.0, 0.0)});
+  add_moving(log, "/wheel", "base_link", "wheel", 1.0);
+  expect_starts_at(drive_in(log), "/body", 310.0);
+}
+
+TEST(LogDrive, OfATopicOfPosesDoesNotReadTransforms) {
+  std::vector<Recorded> log;
+  add_moving(log, "/tf", "odom", "base_link", 10.0);
+  add_moving(log, "/tf", "world", "base_link", 500.0);
+  for (const auto& [topic, x_m] : {std::pair("/odom", 0.0), std::pair("/other", 70.0)}) {
+    for (int i = 0; i < 2; ++i) {
+      log.push_back({topic, kOdometry, odometry_message(kStart_ns + i, x_m + i, 0, 0, 1)});
+    }
+  }
+  expect_starts_at(drive_in(log, "/odom"), "/odom", 0.0);
+  EXPECT_NE(fault_of(log).find("name a topic of poses by --topic"), std::string::npos);
+}
+
+TEST(LogDrive, OfATopicIsFoundWithoutItsFirstSlash) {
+  std::vector<Recorded> log;
+  add_moving(log, "/tf", "odom", "base_link", 10.0);
+  add_moving(log, "/b/tf", "odom", "base_link", 20.0);
+  expect_starts_at(drive_in(log, "tf"), "/tf", 10.0);
+  expect_starts_at(drive_in(log, "b/tf"), "/b/tf", 20.0);
+  add_moving(log, "tf", "odom", "base_link", 30.0);
+  expect_starts_at(drive_in(log, "tf"), "tf", 30.0);
+}
+
+TEST(LogDrive, IsOfTheOnlyBodyInANamespaceOrOnTheGround) {
+  std::vector<Recorded> log;
+  add_moving(log, "/tf", "odom", "base_footprint", 5.0);
+  expect_starts_at(drive_in(log), "/tf", 5.0);
+  add_moving(log, "/tf", "odom", "robot/base_link", 10.0);
+  expect_starts_at(drive_in(log), "/tf", 10.0);
+  add_moving(log, "/tf", "odom", "base_link", 20.0);
+  expect_starts_at(drive_in(log), "/tf", 20.0);
+  std::vector<Recorded> two;
+  add_moving(two, "/tf", "odom", "a/base_link", 1.0);
+  add_moving(two, "/tf", "odom", "b/base_link", 2.0);
+  EXPECT_NE(fault_of(two, "/tf").find("a/base_link, b/base_link"), std::string::npos);
 }
 
 std::string planned_message(int points, bool has_times, double step_m = 2.0,
@@ -238,6 +317,13 @@ TEST(LogDrive, TakesThePlannedTrajectoryThatIsNumbered) {
   const LogDrive without_times = drive_in(bytes, "/planning/trajectory#2");
   ASSERT_EQ(without_times.poses.size(), 7u);
   EXPECT_EQ(without_times.poses.back().stamp_ns, 3'000'000'000) << "12 m at 4 m/s";
+}
+
+TEST(LogDrive, SaysHowManyTrajectoriesThereAre) {
+  const std::string bytes =
+      bag_bytes("/plan", "autoware_planning_msgs/msg/Trajectory", {{1, planned_message(5, true)}});
+  const std::string fault = fault_of(bytes, "/plan#6");
+  EXPECT_NE(fault.find("/plan holds 1 trajectories, needs at least 6"), std::string::npos) << fault;
 }
 
 TEST(LogDrive, RefusesPlansThatTakeLongerThanTimesReach) {

@@ -8,31 +8,21 @@
 #include "roadbed/map/logs/log.h"
 #include "roadbed/tests/support/cloud_message.h"
 #include "roadbed/tests/support/log_bytes.h"
+#include "roadbed/tests/support/made_log.h"
 
 namespace roadbed::map {
 namespace {
 
-using tests::CdrWriter;
+using tests::kOdometry;
+using tests::kTransforms;
 using tests::MadeCloud;
+using tests::Recorded;
+using tests::transform_message;
 
 constexpr const char* kCloud = "sensor_msgs/msg/PointCloud2";
-constexpr const char* kOdometry = "nav_msgs/msg/Odometry";
-constexpr const char* kTransforms = "tf2_msgs/msg/TFMessage";
 constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 
-/// A message of a topic, as it stands in a log.
-struct Recorded {
-  std::string topic, type, bytes;
-};
-
-GoThrough through(const std::vector<Recorded>& log) {
-  return [log](const LogVisitor& visitor) {
-    for (const Recorded& recorded : log) {
-      const LogTopic topic{recorded.topic, recorded.type, "cdr"};
-      if (visitor.wants(topic)) visitor.take(topic, {kStart_ns, recorded.bytes, "message"});
-    }
-  };
-}
+GoThrough through(const std::vector<Recorded>& log) { return tests::through(log, kStart_ns); }
 
 std::vector<PointCloud> clouds_of(const std::vector<Recorded>& log,
                                   const LogCloudTopics& topics = {},
@@ -180,16 +170,6 @@ TEST(LogClouds, NameTheTopicsWhereThereAreSeveral) {
   EXPECT_NE(fault_of({{"/odom", kOdometry, ""}}), "");
 }
 
-std::string transform(std::int64_t stamp_ns, const char* parent, const char* child, double x_m,
-                      double heading_rad) {
-  CdrWriter cdr;
-  cdr.put(std::uint32_t{1}).put(static_cast<std::int32_t>(stamp_ns / 1'000'000'000));
-  cdr.put(static_cast<std::uint32_t>(stamp_ns % 1'000'000'000)).text(parent).text(child);
-  cdr.put(x_m).put(0.0).put(0.0);
-  cdr.put(0.0).put(0.0).put(std::sin(0.5 * heading_rad)).put(std::cos(0.5 * heading_rad));
-  return cdr.bytes();
-}
-
 std::string odometry(double at_s, double x_m, double heading_rad = 0.0) {
   const std::int64_t stamp_ns = kStart_ns + std::llround(1e9 * at_s);
   return tests::odometry_message(stamp_ns, x_m, 0.0, heading_rad, 10.0);
@@ -202,7 +182,7 @@ MadeCloud one_ahead() {
 }
 
 std::vector<Recorded> with_odometry(const MadeCloud& cloud) {
-  return {{"/tf_static", kTransforms, transform(0, "base_link", "lidar", 2.0, M_PI_2)},
+  return {{"/tf_static", kTransforms, transform_message(0, "base_link", "lidar", 2.0, M_PI_2)},
           {"/odom", kOdometry, odometry(0.0, 1000.0)},
           {"/points", kCloud, cloud.message()},
           {"/odom", kOdometry, odometry(1.0, 1010.0)}};
@@ -218,7 +198,7 @@ TEST(LogClouds, StandWhereTheSensorWasBetweenTwoPoses) {
   };
   expect_placed(clouds_of(log));
   const auto second = [](double at_s, double x_m) {
-    return transform(kStart_ns + std::llround(1e9 * at_s), "map", "base_link", x_m, 0.0);
+    return transform_message(kStart_ns + std::llround(1e9 * at_s), "map", "base_link", x_m, 0.0);
   };
   // Transforms are taken before odometry, which may drift.
   log[1].bytes = odometry(0.0, 0.0);
@@ -236,6 +216,99 @@ TEST(LogClouds, AskForATopicWhereSeveralSayWhereTheSensorWas) {
   log.push_back({"/other", kOdometry, odometry(0.0, 0.0)});
   EXPECT_NE(fault_of(log).find("/odom, /other"), std::string::npos) << fault_of(log);
   EXPECT_EQ(fault_of(log, {"", "/odom"}), "");
+}
+
+std::vector<double> places_of(const std::vector<Recorded>& log, const LogCloudTopics& topics = {}) {
+  std::vector<double> x_m;
+  for (const PointCloud& cloud : clouds_of(log, topics)) x_m.push_back(cloud.in_source(0).x());
+  return x_m;
+}
+
+// Half a second after the start it is 5 m farther than at it.
+void add_moving(std::vector<Recorded>& log, const std::string& topic, const std::string& parent,
+                const std::string& child, double x_m) {
+  for (int second : {0, 1}) {
+    log.push_back({topic, kTransforms,
+                   transform_message(kStart_ns + 1'000'000'000 * second, parent, child,
+                                     x_m + 10.0 * second, 0.0)});
+  }
+}
+
+TEST(LogClouds, AreNotPlacedByTheTransformsOfTwoRobots) {
+  std::vector<Recorded> log{{"/points", kCloud, one_ahead().message()}};
+  for (const auto& [robot, x_m] : {std::pair("/robot1", 100.0), std::pair("/robot2", 2000.0)}) {
+    const std::string name(robot);
+    log.push_back({name + "/tf_static", kTransforms,
+                   transform_message(0, "base_link", "lidar", 0.01 * x_m, 0.0)});
+    add_moving(log, name + "/tf", "odom", "base_link", x_m);
+  }
+  const std::string fault = fault_of(log);
+  EXPECT_NE(fault.find("/robot1/tf, /robot2/tf"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("--pose-topic"), std::string::npos) << fault;
+  EXPECT_EQ(places_of(log, {"", "/robot1/tf"}), std::vector{111.0});
+  EXPECT_EQ(places_of(log, {"", "robot2/tf"}), std::vector{2030.0});
+  log.push_back({"/robot2/odom", kOdometry, odometry(0.0, 1000.0)});
+  log.push_back({"/robot2/odom", kOdometry, odometry(1.0, 1010.0)});
+  EXPECT_EQ(places_of(log, {"", "/robot2/odom"}), std::vector{1030.0});
+}
+
+TEST(LogClouds, StandOnATopicOfPosesWhereTransformsMoveOnlyBelowIt) {
+  std::vector<Recorded> log{{"/points", kCloud, one_ahead().message()},
+                            {"/odom", kOdometry, odometry(0.0, 1000.0)},
+                            {"/odom", kOdometry, odometry(1.0, 1010.0)}};
+  add_moving(log, "/tf", "base_link", "lidar", 1.0);
+  EXPECT_EQ(places_of(log), std::vector{1016.0});
+  EXPECT_EQ(places_of(log, {"", "/odom"}), std::vector{1016.0});
+  log.erase(log.begin() + 1, log.begin() + 3);
+  LogCloudCounts counts;
+  clouds_of(log, {}, &counts);
+  EXPECT_EQ(counts.frames_as_they_stand, std::vector<std::string>{"lidar"});
+}
+
+TEST(LogClouds, StandOnTheTopicOfPosesThatIsAskedForWhateverTransformsSayOfItsFrame) {
+  std::vector<Recorded> log{{"/points", kCloud, one_ahead().message()},
+                            {"/odom", kOdometry, odometry(0.0, 1000.0)},
+                            {"/odom", kOdometry, odometry(1.0, 1010.0)}};
+  add_moving(log, "/tf", "base_link", "lidar", 1.0);
+  add_moving(log, "/tf", "odom", "base_link", 20.0);
+  add_moving(log, "/tf", "world", "base_link", 300.0);
+  const std::string fault = fault_of(log);
+  EXPECT_NE(fault.find("name a topic of poses by --pose-topic"), std::string::npos) << fault;
+  EXPECT_EQ(places_of(log, {"", "/odom"}), std::vector{1016.0});
+}
+
+TEST(LogClouds, InGapsOfThePosesAreLeftOut) {
+  std::vector<Recorded> log;
+  for (int i = 0; i <= 30; ++i) {
+    if (i == 11 || i == 12 || (i > 20 && i < 24)) continue;  // of 0.3 s, and of 0.4 s
+    log.push_back({"/odom", kOdometry, odometry(0.1 * i, 1.0 * i)});
+  }
+  for (const std::int64_t at_ms : {1000, 1150, 2000, 2001, 2200, 2399, 2400}) {
+    MadeCloud cloud = one_ahead();
+    cloud.frame = "base_link";
+    cloud.stamp_ns = kStart_ns + 1'000'000 * at_ms;
+    log.push_back({"/points", kCloud, cloud.message()});
+  }
+  LogCloudCounts counts;
+  EXPECT_EQ(clouds_of(log, {}, &counts).size(), 4u);
+  EXPECT_EQ(counts.without_pose, 3u);
+}
+
+TEST(LogClouds, MayComeBetweenPosesAtIrregularTimes) {
+  std::vector<Recorded> log;
+  for (const double at_s : {0.0, 0.01, 0.02, 0.03, 0.04, 0.29, 0.3, 0.31, 0.4, 0.64}) {
+    log.push_back({"/odom", kOdometry, odometry(at_s, 10.0 * at_s)});
+  }
+  MadeCloud cloud = one_ahead();
+  cloud.frame = "base_link";
+  log.push_back({"/points", kCloud, cloud.message()});
+  EXPECT_NEAR(places_of(log).at(0), 10.0, 1e-6);
+}
+
+TEST(LogClouds, OfATopicAreFoundWithoutItsFirstSlash) {
+  expect_are_the_two(clouds_of(
+      {{"/points", kCloud, two_points().message()}, {"/other", kCloud, two_points().message()}},
+      {"points", ""}));
 }
 
 TEST(LogClouds, StandAsTheyAreInFramesWithoutPoses) {
