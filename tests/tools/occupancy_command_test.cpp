@@ -262,6 +262,7 @@ TEST(OccupancyBuild, CarvesFromTheSensorOfEachPointUnlessToldOtherwise) {
     more.insert(more.begin(), {"occupancy", "build", cloud, "-o", octree});
     const ProgramRun run = run_roadbed(more);
     EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.err.find("give --sensor"), std::string::npos) << run.err;
     const ProgramRun info = run_roadbed({"occupancy", "info", octree, "--json"});
     return Json::parse(info.out).at("free").at("volume_m3").get<double>();
   };

@@ -53,7 +53,7 @@ void declare_cloud_topics(Arguments& arguments, map::LogCloudTopics& topics) {
                 "(drive info lists them)");
   arguments.add("--pose-topic", topics.poses,
                 "Of a log: the topic that says where its sensors were, transforms or poses. "
-                "Default: its transforms, else its only topic of poses");
+                "Default: its transforms, or its only topic of poses with them below");
 }
 
 void CloudInputs::declare(Arguments& arguments, bool for_octree) {
@@ -122,7 +122,7 @@ bool CloudInputs::hold_logs() const { return std::ranges::any_of(files_, map::is
 std::optional<std::int64_t> CloudInputs::drive_start_ns() const {
   const auto log = std::ranges::find_if(files_, map::is_log);
   if (log == files_.end()) return std::nullopt;
-  return map::drive_of_log(*log, topics_.poses).poses.front().stamp_ns;
+  return map::drive_of_log(*log, topics_.poses, "--pose-topic").poses.front().stamp_ns;
 }
 
 void CloudInputs::for_each(const std::function<void(map::PointCloud)>& use,
@@ -149,7 +149,7 @@ void CloudInputs::for_each(const std::function<void(map::PointCloud)>& use,
 
 void CloudInputs::pass_on(map::PointCloud cloud, const std::function<void(map::PointCloud)>& use,
                           const Note& note) const {
-  if (note) note_all(note, cloud, for_octree_);
+  if (note) note_all(note, cloud, for_octree_ && !no_carving_);
   if (!cloud.points.empty()) use(std::move(cloud));
 }
 
@@ -181,7 +181,7 @@ void CloudInputs::take_log(const std::filesystem::path& log,
   note_filtered(note, map::input_name(log), counts.filtered_out + filtered_out);
   for (const std::string& text : clouds.notes(counts)) note(map::input_name(log), text);
   note_left_out(note, map::input_name(log), counts.not_finite, points);
-  if (for_octree_ && !have_sensor) note(map::input_name(log), kNoSensor);
+  if (for_octree_ && !no_carving_ && !have_sensor) note(map::input_name(log), kNoSensor);
 }
 
 map::PointCloud CloudInputs::cloud_of(std::size_t i,
