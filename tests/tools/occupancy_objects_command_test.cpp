@@ -5,6 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/map/logs/foxglove_schemas.h"
+#include "roadbed/map/logs/mcap_writer.h"
+#include "roadbed/map/logs/protobuf.h"
+#include "roadbed/tests/support/cloud_message.h"
 #include "roadbed/tests/support/made_street.h"
 #include "roadbed/tests/support/needs_pcl.h"
 #include "roadbed/tests/support/real_data.h"
@@ -120,6 +124,25 @@ TEST_F(OccupancyObjectsCommand, RefusesWhatItCannotUseAndLeavesNoOutput) {
   EXPECT_THAT(of_none.out, HasSubstr("0 objects in 1 clouds"));
   EXPECT_FALSE(std::filesystem::exists(found_));
   EXPECT_EQ(run({cloud}, {"--tolerance", "-1"}).status, 2);
+}
+
+TEST_F(OccupancyObjectsCommand, TellsTimesFromTheFirstCloudWhereRowsOfADriveHaveNoStamps) {
+  MadeCloud made{.stamp_ns = 1'700'000'000'000'000'000};
+  const map::PointCloud street = MadeStreet{.bodies = {}, .reach_m = 10.0}.cloud();
+  for (const Eigen::Vector3f& point : street.points) {
+    made.put(point.x()).put(point.y()).put(point.z());
+    ++made.width;
+  }
+  map::McapWriter log("a test");
+  const auto rows =
+      log.add_topic({"/drive", std::string(map::kDriveStateType), "protobuf"}, {"protobuf", ""});
+  log.write(rows, made.stamp_ns, map::ProtoWriter().number(3, 1.0).bytes());
+  const auto clouds =
+      log.add_topic({"/points", "sensor_msgs/msg/PointCloud2", "cdr"}, {"ros2msg", ""});
+  log.write(clouds, made.stamp_ns, made.message());
+  const ProgramRun program = run({folder_.write("log.mcap", log.finish())});
+  EXPECT_EQ(program.status, 1) << program.err;
+  EXPECT_THAT(program.err, HasSubstr("times are since the first cloud"));
 }
 
 // Annotated by people, and held against them by tests/peers/check_objects.py.

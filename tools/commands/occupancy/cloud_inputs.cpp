@@ -122,7 +122,13 @@ bool CloudInputs::hold_logs() const { return std::ranges::any_of(files_, map::is
 std::optional<std::int64_t> CloudInputs::drive_start_ns() const {
   const auto log = std::ranges::find_if(files_, map::is_log);
   if (log == files_.end()) return std::nullopt;
-  return map::drive_of_log(*log, topics_.poses, "--pose-topic").poses.front().stamp_ns;
+  const map::LogDrive drive = map::drive_of_log(*log, topics_.poses, "--pose-topic");
+  if (!drive.poses.empty()) return drive.poses.front().stamp_ns;
+  throw map::InputError({.file = map::input_name(*log),
+                         .element = drive.topic,
+                         .found = "holds rows, which do not say when they began",
+                         .needed = "poses",
+                         .remedy = "name a topic of poses by --pose-topic"});
 }
 
 void CloudInputs::for_each(const std::function<void(map::PointCloud)>& use,
