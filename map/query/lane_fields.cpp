@@ -1,6 +1,7 @@
 #include "roadbed/map/query/lane_fields.h"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace roadbed::map::inline query {
@@ -63,9 +64,12 @@ FieldValue participants(const AskedLane& lane) {
   return found;
 }
 
+/// As the map's file says it, without what the way to m/s and back adds.
+double in_kmh(double speed_mps) { return std::round(3.6e6 * speed_mps) / 1e6; }
+
 FieldValue speed(const AskedLane& lane) {
   const auto limit_mps = lane.lane().least_speed_limit_mps();
-  return limit_mps ? FieldValue(3.6 * *limit_mps) : FieldValue();
+  return limit_mps ? FieldValue(in_kmh(*limit_mps)) : FieldValue();
 }
 
 FieldValue road(const AskedLane& lane) {

@@ -1,5 +1,6 @@
 #include "roadbed/map/query/lane_question.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "roadbed/map/load_map.h"
+#include "roadbed/tests/support/made_road.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map {
@@ -53,6 +55,16 @@ TEST(LaneQuestion, AsksForWhatTheMapSays) {
   EXPECT_EQ(ask("drivable = true"), lanes_where([](const Lane& l) { return is_drivable(l.type); }));
   EXPECT_EQ(ask("participants = bicycle"),
             lanes_where([](const Lane& l) { return l.participants.has(Participant::bicycle); }));
+}
+
+TEST(LaneQuestion, ComparesSpeedLimitsAsTheFileSaysThem) {
+  for (int kmh = 1; kmh <= 130; ++kmh) {
+    tests::MadeRoad road;
+    road.type = fmt::format(R"(<type s="0" type="town"><speed max="{}" unit="km/h"/></type>)", kmh);
+    const RoadMap map = tests::made_map(tests::made_road(road));
+    EXPECT_EQ(ask(fmt::format("speed = {}", kmh), map).size(), 2U) << kmh;
+    EXPECT_TRUE(ask(fmt::format("speed > {0} or speed < {0}", kmh), map).empty()) << kmh;
+  }
 }
 
 TEST(LaneQuestion, AsksAListForEachOfItsTexts) {
