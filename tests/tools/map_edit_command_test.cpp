@@ -37,6 +37,21 @@ TEST(MapClipCommand, NeedsJustOneRegion) {
   EXPECT_EQ(run_roadbed({"map", "clip", kTown, "--within", "lane:1", "-o", part}).status, 2);
 }
 
+TEST(MapEditCommands, WriteNoMapUnderTheNameOfAnotherFormat) {
+  const TemporaryFolder folder;
+  const std::string osm = folder / "part.osm";
+  const std::vector<std::vector<std::string>> commands{{"map", "clip", kTown, "--bbox=0,0,300,300"},
+                                                       {"map", "transform", kTown, "--shift=1,0"},
+                                                       {"map", "fix", kTown}};
+  for (std::vector<std::string> command : commands) {
+    command.insert(command.end(), {"-o", osm});
+    const ProgramRun run = run_roadbed(command);
+    EXPECT_EQ(run.status, 3);
+    EXPECT_NE(run.err.find("the map is OpenDRIVE, not Lanelet2"), std::string::npos) << run.err;
+    EXPECT_TRUE(files_below(folder.path()).empty());
+  }
+}
+
 // A lane and what is near it; the same as polygon in longitude and latitude.
 TEST(MapClipCommand, TakesTheSurroundingsOfALaneAndPolygons) {
   const TemporaryFolder folder;

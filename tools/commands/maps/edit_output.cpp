@@ -6,10 +6,26 @@
 #include <iostream>
 
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/formats.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/cli/output_format.h"
 
 namespace roadbed::tools::inline commands::inline maps {
+
+void refuse_other_format(const std::filesystem::path& file, const std::string& map_bytes) {
+  const map::Format* own = map::format_of(map_bytes);
+  const std::string suffix = map::format_suffix(file);
+  const bool says_format = suffix != ".xml" && !map::is_standard_stream(file);
+  if (own == nullptr || !says_format) return;
+  for (const map::Format& format : map::formats()) {
+    if (!format.is_written() || format.suffix != suffix || suffix == own->suffix) continue;
+    throw map::OutputError({.file = file.string(),
+                            .found = fmt::format("the map is {}, not {}", own->name, format.name),
+                            .needed = std::string(own->suffix),
+                            .remedy = "rename the output; roadbed convert makes one of the other"});
+  }
+}
 
 void EditOutput::declare(Arguments& arguments) {
   arguments.add("-o,--output", file_, "The map, in the format of the input; - for standard output")
@@ -28,6 +44,7 @@ void EditOutput::check() const { map::check_writable(file_, force_); }
 Exit EditOutput::finish(const map::Edited& edited, const std::string& kind, const Streams& streams,
                         const CommonOptions& common, const Json& more) const {
   const bool made = !edited.bytes.empty();
+  if (made) refuse_other_format(file_, edited.bytes);
   if (made) map::write_output(file_, edited.bytes, force_);
   if (json_) {
     Json counts = Json::object();

@@ -9,6 +9,10 @@
 
 namespace roadbed::tools::inline commands::inline maps {
 
+/// Nobody wants a map under the name of another format.
+/// @throws OutputError if the file's suffix is that of a format that the map is not of.
+void refuse_other_format(const std::filesystem::path& file, const std::string& map_bytes);
+
 /// Where a command that edits a map writes it, and how it says what it did.
 class EditOutput {
  public:

@@ -11,6 +11,7 @@
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/commands/maps/commands.h"
+#include "roadbed/tools/commands/maps/edit_output.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands::inline maps {
@@ -59,7 +60,10 @@ class MapFixCommand : public Command {
     if (!output_.empty()) map::check_writable(output_, force_);
     const map::RepairedFile file =
         map::repair_file(map::read_file(map_file_), map::input_name(map_file_), options_);
-    if (!output_.empty()) map::write_output(output_, file.bytes, force_);
+    if (!output_.empty()) {
+      refuse_other_format(output_, file.bytes);
+      map::write_output(output_, file.bytes, force_);
+    }
     if (json_) {
       print_json(streams.out, file);
     } else {
