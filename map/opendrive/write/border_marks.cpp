@@ -131,7 +131,7 @@ class MarkWriter {
   std::string_view change_at(double s_m) const {
     const auto inside = [&](const std::vector<Range>& ranges) {
       return std::any_of(ranges.begin(), ranges.end(), [&](const Range& range) {
-        return range.from_m <= s_m && s_m < range.to_m + kSame_m;
+        return range.from_m <= s_m && s_m < range.to_m;
       });
     };
     const bool increase = inside(leftwards_), decrease = inside(rightwards_);

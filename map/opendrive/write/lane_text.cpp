@@ -131,6 +131,7 @@ class LanesWriter {
     text_ += marks(section, is_left ? place : place + 1);
     add_speeds(section, place, lane);
     add_access(lane);
+    add_heights(section, place);
     text_ += "</lane>\n";
   }
 
@@ -211,6 +212,17 @@ class LanesWriter {
       add("<speed sOffset=\"{}\" {}/>", short_number(std::max(0.0, limits[i].s_m - begin)),
           std::isfinite(limit_mps) ? fmt::format("max=\"{}\" unit=\"m/s\"", limit_mps)
                                    : "max=\"no limit\"");
+    }
+  }
+
+  void add_heights(const WrittenSection& section, std::size_t place) {
+    const auto& records = shape_.sections[section.planned].heights[place];
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      const bool is_before = i + 1 < records.size() && records[i + 1].s_m <= section.from_m;
+      if (is_before || records[i].s_m >= section.to_m) continue;
+      add("<height sOffset=\"{}\" inner=\"{}\" outer=\"{}\"/>",
+          short_number(std::max(0.0, records[i].s_m - section.from_m)),
+          short_number(records[i].inner_m), short_number(records[i].outer_m));
     }
   }
 

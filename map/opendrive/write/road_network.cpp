@@ -349,9 +349,9 @@ int lane_id(const PlannedSection& section, std::size_t place) {
   return from_left > 0 ? from_left : from_left - 1;
 }
 
-RoadPlan plan_network_roads(const RoadMap& road_map, std::vector<Company> company) {
+RoadPlan plan_network_roads(const RoadMap& road_map, std::vector<Company> company, int minor) {
   for (int round = 0;; ++round) {
-    RoadPlan plan = plan_roads(road_map, company);
+    RoadPlan plan = plan_roads(road_map, company, minor);
     const EndRoles ends = find_end_roles(road_map, plan);
     bool changed = false;
     for (std::size_t road = 0; road < plan.roads.size(); ++road) {

@@ -56,7 +56,8 @@ int lane_id(const PlannedSection& section, std::size_t place);
 
 /// The plan, with roads of one direction wherever OpenDRIVE asks for it: inside junctions.
 /// @param company  the most that lanes may have, by LaneId.
-RoadPlan plan_network_roads(const RoadMap& road_map, std::vector<Company> company);
+/// @param minor  of the revision 1.4 to 1.8.
+RoadPlan plan_network_roads(const RoadMap& road_map, std::vector<Company> company, int minor);
 
 /// How the roads join. Where two ends meet, roads are linked; where more do, those that meet all
 /// others there lead into a junction, the others are its connecting roads, or their first metres

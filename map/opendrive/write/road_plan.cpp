@@ -13,6 +13,8 @@
 namespace roadbed::map::opendrive {
 namespace {
 
+constexpr int kRuleOfRoads = 5, kDirectionOfLanes = 8;  // revisions that have words for them
+
 constexpr double kLeastLength_m = 0.05;   // of a lane that makes a road of its own
 constexpr double kLeastSection_m = 2e-3;  // of one in a section of the map
 constexpr double kLeastWidth_m = 0.02;    // on average
@@ -37,8 +39,8 @@ Eigen::Vector2d end_of(const LaneLine& line, bool last) {
 
 class Planner {
  public:
-  Planner(const RoadMap& road_map, const std::vector<Company>& company)
-      : road_map_(road_map), company_(company) {
+  Planner(const RoadMap& road_map, const std::vector<Company>& company, int minor)
+      : road_map_(road_map), company_(company), minor_(minor) {
     plan_.places.resize(road_map.lanes().size());
     usable_.resize(road_map.lanes().size());
     for (const Lane& lane : road_map.lanes()) {
@@ -55,7 +57,7 @@ class Planner {
   }
 
   RoadPlan plan() {
-    plan_.left_hand_traffic = drives_on_the_left(road_map_);
+    plan_.left_hand_traffic = minor_ >= kRuleOfRoads && drives_on_the_left(road_map_);
     crossing_of_ = crossings_of_lanes(road_map_, usable_);
     for (const Road& road : road_map_.roads()) add_source_road(road);
     for (const Lane& lane : road_map_.lanes()) {
@@ -96,8 +98,11 @@ class Planner {
       PlannedSection& section = made.emplace_back();
       for (const auto& [order, id] : lanes) {
         const LaneOrigin& origin = road_map_.lane(id).origin;
-        section.lanes.push_back({id, origin.road_from_s_m <= origin.road_to_s_m});
-        section.left_lanes += order < 0 ? 1 : 0;
+        const bool forward = origin.road_from_s_m <= origin.road_to_s_m, is_left = order < 0;
+        section.lanes.push_back({id, forward});
+        section.left_lanes += is_left ? 1 : 0;
+        const bool is_usual = forward == (is_left == plan_.left_hand_traffic);
+        is_apart = is_apart || (!is_usual && minor_ < kDirectionOfLanes);
       }
     }
     if (is_apart) {
@@ -107,16 +112,16 @@ class Planner {
     }
   }
 
-  static std::vector<PlannedSection> one_way(const std::vector<PlannedSection>& sections,
-                                             bool forward) {
+  // The lanes of one direction, on the side where it is usual.
+  std::vector<PlannedSection> one_way(const std::vector<PlannedSection>& sections,
+                                      bool forward) const {
     std::vector<PlannedSection> kept;
     for (const PlannedSection& section : sections) {
       PlannedSection& some = kept.emplace_back();
-      for (std::size_t i = 0; i < section.lanes.size(); ++i) {
-        if (section.lanes[i].forward != forward) continue;
-        some.lanes.push_back(section.lanes[i]);
-        some.left_lanes += i < section.left_lanes ? 1 : 0;
+      for (const PlannedLane& lane : section.lanes) {
+        if (lane.forward == forward) some.lanes.push_back(lane);
       }
+      some.left_lanes = forward == plan_.left_hand_traffic ? some.lanes.size() : 0;
     }
     std::erase_if(kept, [](const PlannedSection& section) { return section.lanes.empty(); });
     return kept;
@@ -223,6 +228,7 @@ class Planner {
 
   const RoadMap& road_map_;
   const std::vector<Company>& company_;
+  int minor_;
   std::vector<bool> usable_;
   std::vector<std::optional<std::uint32_t>> crossing_of_;
   RoadPlan plan_;
@@ -238,8 +244,8 @@ bool PlannedRoad::has_both_ways() const {
   return ways[0] && ways[1];
 }
 
-RoadPlan plan_roads(const RoadMap& road_map, const std::vector<Company>& company) {
-  return Planner(road_map, company).plan();
+RoadPlan plan_roads(const RoadMap& road_map, const std::vector<Company>& company, int minor) {
+  return Planner(road_map, company, minor).plan();
 }
 
 }  // namespace roadbed::map::opendrive

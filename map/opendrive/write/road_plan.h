@@ -41,16 +41,18 @@ struct RoadPlan {
   std::vector<PlannedRoad> roads;
   std::vector<std::optional<LanePlaceInPlan>> places;  ///< by LaneId; none: the lane is left out
   std::vector<std::string> left_out;                   ///< lanes that no road can hold, and why
-  bool left_hand_traffic = false;
+  bool left_hand_traffic = false;                      ///< as each road's rule says
 };
 
 /// Which lanes may be beside one in its road.
 enum class Company : std::uint8_t { any, of_its_direction, none, left_out };
 
 /// Groups lanes into roads: a map's own roads as they are, split where a lane leaves one in
-/// between; other lanes with all those beside them, at most one change of direction to a road.
-/// Crosswalks are left out: they are objects.
+/// between, and by direction where the revision cannot say that a lane drives against its side;
+/// other lanes with all those beside them, at most one change of direction to a road. Crosswalks
+/// are left out: they are objects.
 /// @param company  by LaneId.
-RoadPlan plan_roads(const RoadMap& road_map, const std::vector<Company>& company);
+/// @param minor  of the revision 1.4 to 1.8.
+RoadPlan plan_roads(const RoadMap& road_map, const std::vector<Company>& company, int minor);
 
 }  // namespace roadbed::map::opendrive

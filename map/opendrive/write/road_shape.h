@@ -6,6 +6,7 @@
 
 #include "roadbed/geometry/curves/piecewise_cubic.h"
 #include "roadbed/geometry/curves/plan_view.h"
+#include "roadbed/map/opendrive/document.h"
 #include "roadbed/map/opendrive/write/fit_cubics.h"
 #include "roadbed/map/opendrive/write/placed_road.h"
 #include "roadbed/map/opendrive/write/road_plan.h"
@@ -15,12 +16,13 @@ namespace roadbed::map::opendrive {
 /// How near a written border is to the map's.
 inline constexpr double kBorderTolerance_m = 0.006;
 
-/// The shape of a section: of each lane, from left to right, its width, and the road's s by its
-/// own stations.
+/// The shape of a section: of each lane, from left to right, its width, its heights above the
+/// road's plane (none in rims), and the road's s by its own stations.
 struct SectionShape {
   double s_m = 0.0;
   std::size_t left_lanes = 0;
   std::vector<geometry::PiecewiseCubic> widths;
+  std::vector<std::vector<LaneHeight>> heights;
   std::vector<std::vector<Sample>> s_of_station;
   /// In a rim, whether a lane is still there between two borders; of other sections all are.
   std::vector<bool> has_lane;

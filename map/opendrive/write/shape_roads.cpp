@@ -163,11 +163,11 @@ bool part_lanes(const RoadPlan& plan, const std::vector<PlacedRoad>& placed,
 
 }  // namespace
 
-ShapedRoads shape_roads(const RoadMap& road_map) {
+ShapedRoads shape_roads(const RoadMap& road_map, int minor) {
   std::vector<Company> company(road_map.lanes().size(), Company::any);
   Memory memory;
   for (int round = 0;; ++round) {
-    ShapedRoads roads{plan_network_roads(road_map, company), {}};
+    ShapedRoads roads{plan_network_roads(road_map, company, minor), {}};
     RoadsPlacer placer(road_map, roads.plan, memory);
     auto placed = placer.place_all();
     if (round < kMostPlans && part_lanes(roads.plan, placed, company)) {

@@ -14,6 +14,7 @@ struct ShapedRoads {
 /// Which lanes are a road, and its shape. Where one is not sound, the lines across its ends are
 /// chosen anew, each as the one with the least faults of all roads that share it; where that does
 /// not help, each of its lanes has a road of its own, and is left out where even that cannot be.
-ShapedRoads shape_roads(const RoadMap& road_map);
+/// @param minor  of the revision 1.4 to 1.8.
+ShapedRoads shape_roads(const RoadMap& road_map, int minor);
 
 }  // namespace roadbed::map::opendrive

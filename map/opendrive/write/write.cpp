@@ -6,9 +6,14 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <map>
+#include <pugixml.hpp>
+#include <set>
 #include <stdexcept>
+#include <string_view>
 
 #include "roadbed/map/files/projection.h"
+#include "roadbed/map/files/xml.h"
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/opendrive/write/border_errors.h"
 #include "roadbed/map/opendrive/write/furniture_text.h"
@@ -31,7 +36,7 @@ class FileWriter {
  public:
   FileWriter(const RoadMap& road_map, const OpenDriveOptions& options)
       : road_map_(road_map), options_(options) {
-    ShapedRoads roads = shape_roads(road_map);
+    ShapedRoads roads = shape_roads(road_map, options.minor);
     plan_ = std::move(roads.plan);
     shapes_ = std::move(roads.shapes);
     measure(border_errors_m(road_map, plan_, shapes_));
@@ -118,7 +123,7 @@ class FileWriter {
     if (!name.empty()) add(" name=\"{}\"", xml_text(name));
     add(" length=\"{}\" id=\"{}\" junction=\"{}\"", short_number(length_m), part.id,
         part.junction ? network_.junctions[*part.junction].id : "-1");
-    if (options_.minor >= 6 && plan_.left_hand_traffic) text_ += " rule=\"LHT\"";
+    if (plan_.left_hand_traffic) text_ += " rule=\"LHT\"";
     text_ += ">\n";
     add_links(part);
     add_plan_view(shape, part);
@@ -216,11 +221,24 @@ class FileWriter {
     lose("signals near no road", furniture_.lost_signals);
     lose("stop lines near no road", furniture_.lost_stop_lines);
     lose("objects near no road", furniture_.lost_objects);
+    lose("ids of roads, which are no whole numbers", lost_ids());
     lose("users of lanes", losses_.access);
     lose("directions of lanes", losses_.direction);
     for (const std::string& lane : plan_.left_out) {
       file_.notes.push_back(fmt::format("left out is lane {}", lane));
     }
+  }
+
+  std::size_t lost_ids() const {
+    std::set<std::string_view> ids;
+    for (const RoadPart& part : network_.parts) ids.insert(part.id);
+    std::set<RoadId> lost;
+    for (const PlannedRoad& road : plan_.roads) {
+      if (road.source && !ids.contains(road_map_.road(*road.source).source_id)) {
+        lost.insert(*road.source);
+      }
+    }
+    return lost.size();
   }
 
   const RoadMap& road_map_;
@@ -234,6 +252,23 @@ class FileWriter {
   std::string text_;
 };
 
+struct UnwrittenCounter : pugi::xml_tree_walker {
+  bool for_each(pugi::xml_node& node) override {
+    static const std::set<std::string, std::less<>> unwritten{
+        "road/type",         "lane/material",    "lane/rule",           "objects/bridge",
+        "objects/tunnel",    "object/material",  "object/parkingSpace", "objects/objectReference",
+        "signal/dependency", "signal/reference", "junction/priority",   "junction/controller"};
+    const std::string name = fmt::format("{}/{}", node.parent().name(), node.name());
+    if (unwritten.contains(name)) ++counts[name];
+    if (name == "controller/control" && *node.attribute("type").value() != 0) {
+      ++counts["types of controls"];
+    }
+    return true;
+  }
+
+  std::map<std::string, std::size_t> counts;
+};
+
 }  // namespace
 
 OpenDriveFile write_open_drive(const RoadMap& road_map, const OpenDriveOptions& options) {
@@ -242,6 +277,13 @@ OpenDriveFile write_open_drive(const RoadMap& road_map, const OpenDriveOptions& 
         fmt::format("write_open_drive: the revision is 1.4 to 1.8, got 1.{}", options.minor));
   }
   return FileWriter(road_map, options).write();
+}
+
+std::vector<std::pair<std::string, std::size_t>> unwritten_elements(const std::string& source) {
+  const XmlDocument xml(source, "source");
+  UnwrittenCounter counter;
+  xml.root().traverse(counter);
+  return {counter.counts.begin(), counter.counts.end()};
 }
 
 }  // namespace roadbed::map::opendrive

@@ -30,4 +30,8 @@ struct OpenDriveFile {
 /// @throws std::invalid_argument if the revision is none of 1.4 to 1.8.
 OpenDriveFile write_open_drive(const RoadMap& road_map, const OpenDriveOptions& options);
 
+/// Elements of an OpenDRIVE file that are read, but that no file of its map has, and how many.
+/// @throws InputError if the bytes are no XML.
+std::vector<std::pair<std::string, std::size_t>> unwritten_elements(const std::string& source);
+
 }  // namespace roadbed::map::opendrive
