@@ -83,13 +83,20 @@ std::string lanelet2_bytes(const RoadMap& road_map, const SaveOptions& options) 
   const auto offset = options.is_own_crs ? road_map.offset_in_crs() : CrsOffset{};
   lanelet2::Lanelet2File file = lanelet2::write_lanelet2(road_map, {options.crs, offset});
   if (options.notes != nullptr) *options.notes = std::move(file.notes);
+  if (options.lost != nullptr) *options.lost = std::move(file.lost);
   return std::move(file.bytes);
+}
+
+std::string common_road_bytes(const RoadMap& road_map, const SaveOptions& options) {
+  if (options.lost != nullptr) *options.lost = commonroad::lost_in_common_road(road_map);
+  return commonroad::write_common_road(road_map);
 }
 
 std::string open_drive_bytes(const RoadMap& road_map, const SaveOptions& options) {
   const auto offset = options.is_own_crs ? road_map.offset_in_crs() : CrsOffset{};
   opendrive::OpenDriveFile file = opendrive::write_open_drive(road_map, {options.crs, offset});
   if (options.notes != nullptr) *options.notes = std::move(file.notes);
+  if (options.lost != nullptr) *options.lost = std::move(file.lost);
   return std::move(file.bytes);
 }
 
@@ -200,8 +207,7 @@ constexpr std::array<Format, 13> kFormats = {{
      .judge = judge_common_road,
      .rules = common_road_rules,
      .suffix = ".xml",
-     .write = [](const RoadMap& road_map,
-                 const SaveOptions&) { return commonroad::write_common_road(road_map); },
+     .write = common_road_bytes,
      .what = "lanes, links and rules (CommonRoad 2020a)"},
     {.name = "SUMO net",
      .suffix = ".net.xml",

@@ -100,6 +100,8 @@ class Planner {
         add_light(signal);
       } else if (!signal.lanes.empty() && !signal.type.empty()) {
         add_sign(signal);
+      } else {
+        ++plan_.lost_signs;
       }
     }
     add_speed_limits();
@@ -122,7 +124,10 @@ class Planner {
   }
 
   void add_sign(const Signal& signal) {
-    if (limits_speed(signal) && !agrees_with_lanes(road_map_, signal)) return;
+    if (limits_speed(signal) && !agrees_with_lanes(road_map_, signal)) {
+      ++plan_.lost_signs;
+      return;
+    }
     PlannedSign sign;
     sign.elements = {first_element(signal)};
     for (const auto& [key, value] : signal.attributes) {

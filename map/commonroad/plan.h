@@ -66,6 +66,7 @@ struct Plan {
   /// Per lane: ids of signs and lights that it refers to, and its stop line.
   std::vector<std::vector<std::uint64_t>> sign_ids, light_ids;
   std::vector<const StopLine*> stop_lines;
+  std::size_t lost_signs = 0;  ///< that speak to no lane, or say another limit than the lanes have
   /// What became of the source's signs and lights, by their source id.
   std::map<std::string, std::uint64_t, std::less<>> sign_by_source, light_by_source;
 };

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
+#include <set>
 
 #include "roadbed/map/commonroad/plan.h"
 #include "roadbed/map/commonroad/values.h"
@@ -295,10 +297,65 @@ class FileWriter {
   std::string text_;
 };
 
+class LossCounter {
+ public:
+  explicit LossCounter(const RoadMap& road_map) : road_map_(road_map), plan_(make_plan(road_map)) {}
+
+  std::vector<std::pair<std::string, std::size_t>> count() {
+    count_lanes();
+    lose("signs that speak to no lane, or say another limit than its own", plan_.lost_signs);
+    const std::set<const StopLine*> written(plan_.stop_lines.begin(), plan_.stop_lines.end());
+    lose("stop lines", std::ranges::count_if(road_map_.stop_lines(), [&](const StopLine& line) {
+           return !written.contains(&line);
+         }));
+    lose("objects", std::ssize(road_map_.objects()));
+    lose("areas", std::ssize(road_map_.areas()));
+    lose("controllers", std::ssize(road_map_.controllers()));
+    lose("regulations but for limits, traffic lights and intersections",
+         std::ranges::count_if(road_map_.regulations(), [](const Regulation& one) {
+           return one.type != "speed_limit" && one.type != "traffic_light" &&
+                  one.type != "intersection";
+         }));
+    return std::move(lost_);
+  }
+
+ private:
+  void lose(const char* what, std::ptrdiff_t count) {
+    if (count > 0) lost_.emplace_back(what, static_cast<std::size_t>(count));
+  }
+
+  void count_lanes() {
+    std::ptrdiff_t unsaid = 0, slowing = 0, repainted = 0;
+    for (const Lane& lane : road_map_.lanes()) {
+      if (plan_.lane_ids[lane.id.index] == kNoLanelet) {
+        ++unsaid;
+        continue;
+      }
+      slowing += lane.speed_limits.size() > 1 ? 1 : 0;
+      for (const auto* marks : {&lane.left_marks, &lane.right_marks}) {
+        repainted += std::ranges::any_of(*marks, [&](const BorderMark& mark) {
+          return marking_word(mark) != marking_word(marks->front());
+        });
+      }
+    }
+    lose("lanes of type none", unsaid);
+    lose("changes of the speed limit along a lane, which has the least", slowing);
+    lose("changes of the marking along a border, which has the longest", repainted);
+  }
+
+  const RoadMap& road_map_;
+  const Plan plan_;
+  std::vector<std::pair<std::string, std::size_t>> lost_;
+};
+
 }  // namespace
 
 std::string write_common_road(const RoadMap& road_map) {
   return FileWriter(road_map, make_plan(road_map)).write();
+}
+
+std::vector<std::pair<std::string, std::size_t>> lost_in_common_road(const RoadMap& road_map) {
+  return LossCounter(road_map).count();
 }
 
 }  // namespace roadbed::map::commonroad

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "roadbed/map/model/road_map.h"
 
@@ -15,5 +17,8 @@ namespace roadbed::map::commonroad {
 /// Signs that speak to no lane and lanes of type none cannot be said in CommonRoad and are left
 /// out. Where the map names no scenario, its country is that of its signs.
 std::string write_common_road(const RoadMap& road_map);
+
+/// What such a file does not hold of the map, and how many of it.
+std::vector<std::pair<std::string, std::size_t>> lost_in_common_road(const RoadMap& road_map);
 
 }  // namespace roadbed::map::commonroad

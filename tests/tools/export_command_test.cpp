@@ -140,6 +140,54 @@ TEST(ExportCommand, GivesAnOpenDriveFileBackAsItStands) {
   EXPECT_EQ(run_roadbed({"validate", folder / "b.xodr"}).status, 0);
 }
 
+TEST(ExportCommand, GivesEveryDocumentBackInItsOwnFormat) {
+  const TemporaryFolder folder;
+  for (const char* name : {"junction.xml", "crossing.osm"}) {
+    const std::string source = data_folder() / name;
+    const std::string output = folder / name;
+    ASSERT_EQ(run_roadbed({"convert", source, output}).status, 0);
+    EXPECT_TRUE(bytes_of(output) == bytes_of(source)) << name;
+  }
+}
+
+nlohmann::json lost_of(const std::vector<std::string>& words) {
+  const ProgramRun run = run_roadbed(words);
+  EXPECT_EQ(run.status, 0) << run.err;
+  nlohmann::json lost;
+  for (const auto& one : nlohmann::json::parse(run.out).at("lost")) {
+    lost[one.at("what").get<std::string>()] = one.at("count");
+  }
+  return lost;
+}
+
+TEST(ExportCommand, SaysWhatOfItsSourceAnotherVersionHasNot) {
+  const TemporaryFolder folder;
+  std::string bytes = bytes_of(golden("two_roads.xodr"));
+  bytes.insert(bytes.find("<planView>"), "<type s=\"0\" type=\"town\"/>");
+  bytes.insert(bytes.rfind("</road>"),
+               "<userData code=\"a\"/><objects><bridge id=\"b\" s=\"1\" "
+               "length=\"2\" type=\"steel\"/></objects>");
+  const std::string source = folder.write("a.xodr", bytes);
+  const nlohmann::json lost = lost_of(
+      {"export", source, "-o", folder / "b.xodr", "--opendrive", "1.4", "--json", "--quiet"});
+  EXPECT_EQ(lost.value("road/type", 0), 1) << lost;
+  EXPECT_EQ(lost.value("road/userData", 0), 1) << lost;
+  EXPECT_EQ(lost.value("objects/bridge", 0), 1) << lost;
+}
+
+TEST(ExportCommand, SaysThatNoMapHoldsAScenario) {
+  const TemporaryFolder folder;
+  std::string bytes = bytes_of(data_folder() / "junction.xml");
+  const std::string version = "commonRoadVersion=\"2020a\"";
+  bytes.replace(bytes.find(version), version.size(), "commonRoadVersion=\"2018b\"");
+  const std::string older = folder.write("older.xml", bytes);
+  for (const char* output : {"b.xodr", "b.xml"}) {
+    const nlohmann::json lost =
+        lost_of({"export", older, "-o", folder / output, "--json", "--quiet"});
+    EXPECT_EQ(lost.value("planning problems", 0), 1) << lost;
+  }
+}
+
 TEST(ExportCommand, SaysHowNearOpenDriveIsAndWhatIsLost) {
   const TemporaryFolder folder;
   const ProgramRun run = run_roadbed(

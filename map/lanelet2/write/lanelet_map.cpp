@@ -218,12 +218,17 @@ LaneletMap lanelet_map(const RoadMap& road_map, const LaneletChoices& choices) {
   return made;
 }
 
+std::size_t flattened_limits(const RoadMap& road_map, const LaneletMap& made) {
+  return static_cast<std::size_t>(std::ranges::count_if(road_map.lanes(), [&](const Lane& lane) {
+    return made.lanelets[lane.id.index] && lane.speed_limits.size() > 1;
+  }));
+}
+
 std::vector<std::string> notes_of(const LaneletMap& made) {
   std::vector<std::string> notes;
   const auto note = [&](std::size_t count, const char* what) {
     if (count > 0) notes.push_back(fmt::format("{} {}", count, what));
   };
-  note(made.left_out, "lanes that nobody may use are left out");
   note(made.lost_links, "links are lost: their lanes' ends are too far apart to be one");
   note(made.unwanted_links, "lanes begin where another one ends and now follow it");
   if (made.largest_move_m > 1e-3) {

@@ -53,6 +53,11 @@ LaneletMap lanelet_map(const RoadMap& road_map, const LaneletChoices& choices = 
 /// Regulatory elements, signs, lights, stop lines, areas and objects, to lanelets that are there.
 void add_furniture(const RoadMap& road_map, const LaneletChoices& choices, LaneletMap& made);
 
+inline constexpr auto kFlattenedLimits =
+    "changes of the speed limit along a lane, which has the least";
+/// How many lanelets have one limit, the least, where the map's lanes change it along the way.
+std::size_t flattened_limits(const RoadMap& road_map, const LaneletMap& made);
+
 /// What the user should know of it, a line each.
 std::vector<std::string> notes_of(const LaneletMap& made);
 

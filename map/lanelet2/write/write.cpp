@@ -34,12 +34,22 @@ OsmPlaces places_of(const RoadMap& road_map, const OsmMap& osm, const Lanelet2Op
   return places;
 }
 
+std::vector<std::pair<std::string, std::size_t>> lost_of(const RoadMap& road_map,
+                                                         const LaneletMap& made) {
+  std::vector<std::pair<std::string, std::size_t>> lost;
+  if (made.left_out > 0) lost.emplace_back("lanes that nobody may use", made.left_out);
+  const std::size_t limits = flattened_limits(road_map, made);
+  if (limits > 0) lost.emplace_back(kFlattenedLimits, limits);
+  return lost;
+}
+
 }  // namespace
 
 Lanelet2File write_lanelet2(const RoadMap& road_map, const Lanelet2Options& options) {
   const TransverseMercator grid = grid_of(options.crs);
   const LaneletMap made = lanelet_map(road_map);
-  return {osm_text(made.osm, places_of(road_map, made.osm, options, grid)), notes_of(made)};
+  return {osm_text(made.osm, places_of(road_map, made.osm, options, grid)), notes_of(made),
+          lost_of(road_map, made)};
 }
 
 Lanelet2File write_lanelet2(const RoadMap& road_map) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "roadbed/map/model/road_map.h"
@@ -16,7 +17,8 @@ struct Lanelet2Options {
 /// A Lanelet2 file, and what could not be said in it.
 struct Lanelet2File {
   std::string bytes;
-  std::vector<std::string> notes;  ///< a line each, for the user
+  std::vector<std::string> notes;                         ///< a line each, for the user
+  std::vector<std::pair<std::string, std::size_t>> lost;  ///< what is not in it, and how many
 };
 
 /// The map as Lanelet2: borders shared by neighbours, end nodes by successors, so that its routing

@@ -122,6 +122,29 @@ TEST(WriteCommonRoad, LanesOfTypeNoneAreLeftOutWithWhatLeadsToThem) {
   EXPECT_FALSE(back.graph().of(LaneId{0}).right.has_value());
 }
 
+TEST(WriteCommonRoad, WhatIsNotWrittenIsCounted) {
+  tests::MadeMap made = tests::straight_two_lane_road();
+  EXPECT_TRUE(commonroad::lost_in_common_road(made.build()).empty());
+  Lane& lane = made.lane(LaneId{0});
+  lane.speed_limits = {{0.0, 20.0}, {40.0, 10.0}};
+  lane.right_marks = {{0.0, MarkType::solid, "white", 0.1}, {10.0, MarkType::broken, "white", 0.1}};
+  made.lane(made.add_lane(RoadId{0}, "9", {{0, 30}, {10, 30}}, {{0, 28}, {10, 28}})).type =
+      LaneType::none;
+  Signal sign;
+  sign.source_id = "5";
+  sign.type = "101";
+  made.parts.signals.push_back(sign);
+  made.parts.objects.emplace_back();
+  using Lost = std::pair<std::string, std::size_t>;
+  EXPECT_EQ(
+      commonroad::lost_in_common_road(made.build()),
+      (std::vector<Lost>{{"lanes of type none", 1},
+                         {"changes of the speed limit along a lane, which has the least", 1},
+                         {"changes of the marking along a border, which has the longest", 1},
+                         {"signs that speak to no lane, or say another limit than its own", 1},
+                         {"objects", 1}}));
+}
+
 TEST(WriteCommonRoad, TheCountryIsThatOfTheSigns) {
   tests::MadeMap made = tests::straight_two_lane_road();
   Signal sign;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/map/commonroad/scenario.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/projection.h"
@@ -94,8 +95,8 @@ class ExportCommand : public Command {
                   "PROJ string, or \"unknown\"");
     arguments
         .add("--opendrive", open_drive_,
-             "Version of an OpenDRIVE output, 1.8 if none is given; an OpenDRIVE file itself is "
-             "written as it stands, unless its version or its system is to change")
+             "Version of an OpenDRIVE output, 1.8 if none is given; a file of the output's own "
+             "format is written as it stands, unless its version or its system is to change")
         .one_of({"1.4", "1.8"});
     arguments
         .add("--profile", profile_,
@@ -116,7 +117,9 @@ class ExportCommand : public Command {
     map::MapPageOptions page{.title = file == "-" ? map::input_name(input_) : file, .file = file};
     const map::RoadMap road_map = suffix() == ".html" ? judged_map(page) : map::load_map(input_);
     overlays_.add_to(page, road_map);
-    const Written written = write(format, road_map, std::move(page));
+    const Written written = is_own_document(format, road_map)
+                                ? source_itself(format)
+                                : write(format, road_map, std::move(page));
     map::write_output_parts(output_, written.parts, force_);
     if (json_) print_json(streams.out, format, road_map, written);
     if (!common.quiet) print_text(streams.err, road_map, written);
@@ -182,31 +185,66 @@ class ExportCommand : public Command {
                 map::MapPageOptions page) const {
     if (format.name == "OpenDRIVE") return write_open_drive(format, road_map);
     if (!profile_.empty()) return write_autoware(format, road_map);
-    Written written;
+    Written written{{}};
     const std::string file = output_.filename().string();
     written.parts = format.output(
         road_map,
         {layers_, system_of(road_map), is_own_system(road_map), &written.notes, &written.lost,
          file.substr(0, file.size() - map::format_suffix(file).size()), std::move(page)});
+    add_source_losses(format, road_map, written);
     return written;
   }
 
-  Written write_open_drive(const map::Format& format, const map::RoadMap& road_map) const {
-    const bool is_own = map::format_of(input_) == &format;
-    if (is_own && !asks_for_another(road_map)) {
-      return {
-          one_file(format, map::map_bytes(map::read_file(input_), map::input_name(input_)).bytes),
-          {"the document is the source's own, value for value, with its faults; --opendrive 1.8 or "
-           "1.4 makes another version anew"}};
+  // Whether the map's own document is what is asked for; a CommonRoad file is written as 2020a.
+  bool is_own_document(const map::Format& format, const map::RoadMap& road_map) const {
+    const bool is_document = format.judge != nullptr && map::format_of(input_) == &format;
+    return is_document && profile_.empty() && road_map.format() != "CommonRoad 2018b" &&
+           !asks_for_another(road_map);
+  }
+
+  Written source_itself(const map::Format& format) const {
+    std::string note = "the document is the source's own, value for value, with its faults";
+    if (format.name == "OpenDRIVE") note += "; --opendrive 1.8 or 1.4 makes another version anew";
+    return {one_file(format, source_bytes()), {std::move(note)}};
+  }
+
+  std::string source_bytes() const {
+    return map::map_bytes(map::read_file(input_), map::input_name(input_)).bytes;
+  }
+
+  // What the file has that the map has not.
+  void add_source_losses(const map::Format& format, const map::RoadMap& road_map,
+                         Written& written) const {
+    const map::Format* source = map::format_of(input_);
+    if (source == nullptr || format.judge == nullptr) return;
+    const auto lose = [&](std::string what, std::size_t count) {
+      if (count > 0) written.lost.emplace_back(std::move(what), count);
+    };
+    if (source->name == "CommonRoad") {
+      const map::commonroad::Scenario scenario =
+          map::commonroad::parse_scenario(source_bytes(), map::input_name(input_));
+      lose("obstacles", scenario.obstacles.size());
+      lose("planning problems", scenario.planning_problems.size());
     }
+    if (source != &format) return;
+    for (const map::UnusedContent& unused : road_map.unused()) lose(unused.name, unused.count);
+    if (format.name != "OpenDRIVE") return;
+    for (auto& [name, count] : map::opendrive::unwritten_elements(source_bytes())) {
+      lose(name, count);
+    }
+  }
+
+  Written write_open_drive(const map::Format& format, const map::RoadMap& road_map) const {
     const auto offset = is_own_system(road_map) ? road_map.offset_in_crs() : map::CrsOffset{};
     map::opendrive::OpenDriveFile file = map::opendrive::write_open_drive(
         road_map, {system_of(road_map), offset, open_drive_ == "1.4" ? 4 : 8});
-    if (is_own) {
+    if (map::format_of(input_) == &format) {
       file.notes.emplace_back("the document is made anew, as its version or its system changes");
     }
-    return {one_file(format, std::move(file.bytes)), std::move(file.notes), std::move(file.lost),
-            file.largest_error_m, file.largest_height_error_m};
+    Written written{one_file(format, std::move(file.bytes)), std::move(file.notes),
+                    std::move(file.lost), file.largest_error_m, file.largest_height_error_m};
+    add_source_losses(format, road_map, written);
+    return written;
   }
 
   Written write_autoware(const map::Format& format, const map::RoadMap& road_map) const {
@@ -214,7 +252,7 @@ class ExportCommand : public Command {
     options.crs = system_of(road_map);
     if (is_own_system(road_map)) options.offset_in_crs = road_map.offset_in_crs();
     if (map::format_of(input_) == &format) {
-      options.source = map::map_bytes(map::read_file(input_), map::input_name(input_)).bytes;
+      options.source = source_bytes();
     }
     map::lanelet2::AutowareFiles files = map::lanelet2::write_autoware(road_map, options);
     Written written{one_file(format, std::move(files.vector_map)), std::move(files.notes),

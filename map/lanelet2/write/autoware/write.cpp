@@ -50,6 +50,7 @@ std::vector<std::pair<std::string, std::size_t>> lost_of(const RoadMap& road_map
   add("shoulders and parking lanes that lie beside no road", shoulders);
   add("tram and rail lanes", rails);
   add("lanes that nobody may use", unused);
+  add(kFlattenedLimits, flattened_limits(road_map, made));
   if (!is_from_lanelet2(road_map)) add("areas", road_map.areas().size());
   return lost;
 }
@@ -84,7 +85,6 @@ class AutowareWriter {
   WrittenMap written() const { return {made_.osm, frame().places}; }
 
   void add_notes(const AssumedOfLights& assumed, std::vector<std::string>& notes) {
-    made_.left_out = 0;  // told as lost
     for (std::string& note : notes_of(made_)) notes.push_back(std::move(note));
     const auto note = [&](std::size_t count, const char* what) {
       if (count > 0) notes.push_back(fmt::format("{} {}", count, what));
@@ -93,7 +93,8 @@ class AutowareWriter {
     note(assumed.facings,
          "traffic lights face away from the lanes that they speak to: turned round");
     note(assumed.stop_lines,
-         "stop lines are missing: they are put where the intersection's lanes begin");
+         "stop lines are missing: they are put where the intersection's lanes begin, or "
+         "beside the light where there is none");
   }
 
   const RoadMap& road_map_;
