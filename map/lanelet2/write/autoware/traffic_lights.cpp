@@ -14,12 +14,19 @@
 namespace roadbed::map::lanelet2 {
 namespace {
 
+constexpr double kSameEdge_m = 1.0;     // along a lanelet
 constexpr double kUsualHeight_m = 1.0;  // of three bulbs of 20 to 30 cm in their body
+
+Eigen::Vector3d point_at(const LaneLine& line, double station_m) {
+  const Eigen::Vector2d at = Lane::point_at(line, station_m);
+  return {at.x(), at.y(), Lane::height_at(line, station_m)};
+}
 
 class LightCompleter {
  public:
   LightCompleter(const RoadMap& road_map, const WrittenMap& written, LaneletMap& made)
-      : keeps_users_(is_from_lanelet2(road_map)),
+      : road_map_(road_map),
+        keeps_users_(is_from_lanelet2(road_map)),
         written_(written),
         made_(made),
         osm_(made.osm),
@@ -105,7 +112,7 @@ class LightCompleter {
       const bool has_line = nodes.size() >= 2 && !users.empty();
       const bool turned_away =
           has_line && std::ranges::all_of(users, [&](LaneId user) {
-            const LaneletEdge edge = edge_at_line(user);
+            const LaneletEdge edge = edge_at_line(user, light);
             const Eigen::Vector3d along =
                 osm_.nodes[nodes.back()].in_map - osm_.nodes[nodes.front()].in_map;
             return along.head<2>().dot((edge.right - edge.left).head<2>()) < 0.0;
@@ -116,9 +123,18 @@ class LightCompleter {
     }
   }
 
-  /// Where vehicles stop for a light that a lanelet names.
-  LaneletEdge edge_at_line(LaneId user) const {
-    return is_in_intersection(user) ? start_edge(made_, user) : end_edge(made_, user);
+  /// Where vehicles stop for a light that a lanelet names: before an intersection, else beside the
+  /// light, at the lanelet's end where it stands beyond that.
+  LaneletEdge edge_at_line(LaneId user, std::uint32_t light) const {
+    if (is_in_intersection(user)) return start_edge(made_, user);
+    const LaneletEdge end = end_edge(made_, user);
+    const std::vector<Eigen::Vector3d> line = osm_.points(light);
+    const auto is_inside = [&](LaneId next) { return is_in_intersection(next); };
+    if (line.empty() || std::ranges::any_of(following(user), is_inside)) return end;
+    const Lane& lane = road_map_.lane(user);
+    const double s_m = lane.centre.in_map.project(line.front().head<2>()).s_m;
+    if (s_m > lane.length_m() - kSameEdge_m) return end;
+    return {point_at(lane.left, s_m), point_at(lane.right, s_m)};
   }
 
   /// Red, yellow and green from top to bottom, in the middle of the light's line.
@@ -157,29 +173,34 @@ class LightCompleter {
            });
   }
 
-  /// Lights of the same lanelets have one line.
+  /// Lights of the same lanelets have one line, if it is at the same place.
   void add_line(std::uint32_t element, const std::vector<LaneId>& users) {
-    if (!ways(element, "ref_line").empty()) return;
-    const auto [known, is_new] = lines_.try_emplace(users);
-    if (is_new) {
-      std::vector<LaneletEdge> edges;
-      for (const LaneId user : users) {
-        edges.push_back(is_in_intersection(user) ? start_edge(made_, user) : end_edge(made_, user));
-      }
-      known->second = add_stop_line(made_, edges);
+    const auto lights = ways(element, "refers");
+    if (!ways(element, "ref_line").empty() || lights.empty()) return;
+    std::vector<LaneletEdge> edges;
+    for (const LaneId user : users) edges.push_back(edge_at_line(user, lights.front()));
+    auto& lines = lines_[users];
+    const auto is_here = [&](const auto& line) {
+      return (line.first - edges.front().left).norm() < kSameEdge_m;
+    };
+    auto known = std::ranges::find_if(lines, is_here);
+    if (known == lines.end()) {
+      known = lines.insert(known, {edges.front().left, add_stop_line(made_, edges)});
       ++assumed_.stop_lines;
     }
     osm_.relations[element].members.push_back({MemberKind::way, known->second, "ref_line"});
   }
 
+  const RoadMap& road_map_;
   const bool keeps_users_;
   const WrittenMap& written_;
   LaneletMap& made_;
   OsmMap& osm_;
   const std::map<std::uint32_t, LaneId> lanes_;
   AssumedOfLights assumed_;
-  std::map<std::uint32_t, std::uint32_t> bulbs_;        // of a light's way
-  std::map<std::vector<LaneId>, std::uint32_t> lines_;  // before those lanelets
+  std::map<std::uint32_t, std::uint32_t> bulbs_;  // of a light's way
+  /// Before those lanelets, by a corner.
+  std::map<std::vector<LaneId>, std::vector<std::pair<Eigen::Vector3d, std::uint32_t>>> lines_;
 };
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace roadbed::map::lanelet2 {
 struct AssumedOfLights {
   std::size_t heights = 0;     ///< of bodies
   std::size_t facings = 0;     ///< the source has them turned away from those they speak to
-  std::size_t stop_lines = 0;  ///< at the edge of the intersection
+  std::size_t stop_lines = 0;  ///< before the intersection, else beside the light
 };
 
 /// Traffic lights as Autoware asks for them: each with the height of its body, three bulbs and a

@@ -227,6 +227,27 @@ TEST(WriteAutoware, ALightIsNamedBehindItsStopLineAndHasBulbsRedOnTop) {
   }
 }
 
+TEST(WriteAutoware, WithoutAnIntersectionVehiclesStopBesideTheirLight) {
+  tests::MadeMap made = tests::straight_two_lane_road();
+  for (const double x_m : {30.0, 60.0}) {
+    Signal light;
+    light.source_id = std::to_string(static_cast<int>(x_m));
+    light.dynamic = true;
+    light.in_map = {x_m, -6.0};
+    light.heading_rad = M_PI;
+    light.lanes = {LaneId{0}};
+    made.parts.signals.push_back(light);
+  }
+  const Document document = read_document(written(made.build()).vector_map, "written.osm");
+  std::set<double> places_m;
+  for (const Relation* element : relations_of(document, "traffic_light")) {
+    for (const std::uint32_t node : members_of(document, *element, "ref_line").at(0)->nodes) {
+      places_m.insert(std::round(document.nodes[node].in_map.x() + document.origin_in_source.x()));
+    }
+  }
+  EXPECT_EQ(places_m, (std::set{30.0, 60.0}));
+}
+
 TEST(WriteAutoware, ALightRunsFromLeftToRightAsItsDriversSeeItHoweverItIsTurned) {
   for (const double heading_rad : {0.0, M_PI}) {
     const AutowareFiles files = written(lit_road(heading_rad));
@@ -275,12 +296,16 @@ TEST(WriteAutoware, ACrosswalkIsALaneletAcrossTheRoadThatNamesIt) {
 
 TEST(WriteAutoware, WhatAutowareHasNoPlaceForIsCounted) {
   tests::MadeMap made = tests::straight_two_lane_road();
+  made.lane(LaneId{0}).speed_limits = {{0.0, 10.0}, {40.0, 5.0}};
   made.lane(made.add_lane(RoadId{0}, "9", {{0.0, 30.0}, {100.0, 30.0}},
                           {{0.0, 28.0}, {100.0, 28.0}}, LaneType::sidewalk))
       .participants = Participants{Participant::pedestrian};
   const AutowareFiles files = written(made.build());
-  EXPECT_THAT(files.lost, testing::ElementsAre(
-                              testing::Pair("sidewalks that lie beside no road", std::size_t{1})));
+  EXPECT_THAT(files.lost,
+              testing::ElementsAre(
+                  testing::Pair("sidewalks that lie beside no road", std::size_t{1}),
+                  testing::Pair("changes of the speed limit along a lane, which has the least",
+                                std::size_t{1})));
 }
 
 }  // namespace
