@@ -10,6 +10,8 @@
 namespace roadbed::map::validation {
 namespace {
 
+constexpr double kNone_m = 1e-3;  // of width
+
 bool holds(const std::vector<LaneId>& lanes, LaneId lane) {
   return std::find(lanes.begin(), lanes.end(), lane) != lanes.end();
 }
@@ -55,15 +57,14 @@ void add_zero_width(const Lane& lane, bool at_end, const Eigen::Vector2d& in_map
 }
 
 void zero_width_links(const RoadMap& road_map, const ValidateOptions&, Report& report) {
-  constexpr double kNone = 1e-3;  // [m]
   for (const Lane& lane : road_map.lanes()) {
     if (!is_drivable(lane.type)) continue;
     const LaneLinks& links = road_map.graph().of(lane.id);
     const auto& centre = lane.centre.in_map.points();
-    if (!links.predecessors.empty() && lane.width_m(0.0) < kNone) {
+    if (!links.predecessors.empty() && lane.width_m(0.0) < kNone_m) {
       add_zero_width(lane, false, centre.front(), report);
     }
-    if (!links.successors.empty() && lane.width_m(lane.length_m()) < kNone) {
+    if (!links.successors.empty() && lane.width_m(lane.length_m()) < kNone_m) {
       add_zero_width(lane, true, centre.back(), report);
     }
   }
@@ -80,7 +81,7 @@ bool leads_outside(const Lane& lane, std::string_view key) {
 void dead_ends(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   for (const Lane& lane : road_map.lanes()) {
     if (!is_drivable(lane.type) || !road_map.graph().of(lane.id).successors.empty() ||
-        leads_outside(lane, kSuccessorsOutside)) {
+        leads_outside(lane, kSuccessorsOutside) || lane.width_m(lane.length_m()) < kNone_m) {
       continue;
     }
     Finding& finding =
@@ -95,7 +96,7 @@ void unreachable_lanes(const RoadMap& road_map, const ValidateOptions&, Report& 
   for (const Lane& lane : road_map.lanes()) {
     const LaneLinks& links = road_map.graph().of(lane.id);
     if (!is_drivable(lane.type) || !links.predecessors.empty() ||
-        leads_outside(lane, kPredecessorsOutside)) {
+        leads_outside(lane, kPredecessorsOutside) || lane.width_m(0.0) < kNone_m) {
       continue;
     }
     const auto joins = [](const std::optional<Neighbour>& neighbour) {
@@ -187,12 +188,13 @@ constexpr std::array<MapRule, 7> kLinkRules = {{
     {{"link.dead-end",
       {},
       Severity::info,
-      "a drivable lane leads nowhere (a warning in a junction)"},
+      "a drivable lane that has width to its end leads nowhere (a warning in a junction)"},
      dead_ends},
     {{"link.unreachable",
       {},
       Severity::info,
-      "nothing leads to a drivable lane (a warning in a junction)"},
+      "nothing leads to a drivable lane that has width from its start on (a warning in a "
+      "junction)"},
      unreachable_lanes},
     {{"link.leads-off-road",
       {},

@@ -143,14 +143,15 @@ void unshared_borders(const Source& source, const validation::ValidateOptions&,
   constexpr double kSameLevel = 1.0;  // [m]
   const std::vector<Node>& nodes = source.document.nodes;
   NearEnds ends(nodes);
+  std::set<std::pair<const Node*, const Node*>> said;  // from the first on: a lanelet's own corners
   for (const Lanelet& lanelet : source.lanelets) {
     if (!lanelet.start) continue;
     for (const auto& [left, right] : {*lanelet.start, *lanelet.end}) {
       ends.add(left);
       ends.add(right);
+      said.insert(std::minmax(&nodes[left], &nodes[right]));
     }
   }
-  std::set<std::pair<const Node*, const Node*>> said;
   for (const Lanelet& lanelet : source.lanelets) {
     if (!lanelet.start) continue;
     for (const std::uint32_t place :

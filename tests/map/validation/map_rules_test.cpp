@@ -318,6 +318,20 @@ TEST(MapRules, TakeNoEdgeOfAPartOfAMapForADeadEnd) {
   EXPECT_TRUE(of_rule(made, "link.unreachable").empty());
 }
 
+TEST(MapRules, TakeNoEndWithoutWidthForADeadEnd) {
+  const auto ends = [](double from_y_m, double to_y_m, const char* rule) {
+    MadeMap made;
+    const LaneId lane =
+        made.add_lane(made.add_road("1"), "-1", {{0, from_y_m}, {50, to_y_m}}, {{0, 0}, {50, 0}});
+    made.lane(lane).junction = made.add_junction("4");
+    return of_rule(made, rule).size();
+  };
+  EXPECT_EQ(ends(3, 0.01, "link.dead-end"), 1u);
+  EXPECT_EQ(ends(3, 0, "link.dead-end"), 0u);
+  EXPECT_EQ(ends(0.01, 3, "link.unreachable"), 1u);
+  EXPECT_EQ(ends(0, 3, "link.unreachable"), 0u);
+}
+
 TEST(MapRules, TakeTheTwoDirectionsOfARoadForOnePart) {
   MadeMap made = tests::straight_two_lane_road();
   EXPECT_TRUE(of_rule(made, "link.separate-part").empty());

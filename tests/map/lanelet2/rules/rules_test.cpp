@@ -114,6 +114,13 @@ TEST(Lanelet2Rules, LeaveALaneletAloneThatBeginsAndEndsInAPoint) {
   EXPECT_TRUE(tests::source_findings(text, "file.osm", "lanelet2.swapped-borders").empty());
 }
 
+TEST(Lanelet2Rules, LeaveALaneletsOwnCornersApartWhereItHasNoWidth) {
+  std::string text = clean_file();
+  const std::size_t corner = text.find("0.000000", text.find("<node id=\"43\""));
+  text.replace(corner, 8, "3.450000");
+  EXPECT_TRUE(tests::source_findings(text, "file.osm", "lanelet2.unshared-border").empty());
+}
+
 TEST(Lanelet2Rules, TakeTwoWayLaneletsForWhatTheyAre) {
   std::string text = clean_file();
   const std::string road = R"(<tag k="type" v="lanelet"/>)";
