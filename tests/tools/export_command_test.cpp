@@ -153,8 +153,9 @@ TEST(ExportCommand, GivesEveryDocumentBackInItsOwnFormat) {
 nlohmann::json lost_of(const std::vector<std::string>& words) {
   const ProgramRun run = run_roadbed(words);
   EXPECT_EQ(run.status, 0) << run.err;
-  nlohmann::json lost;
-  for (const auto& one : nlohmann::json::parse(run.out).at("lost")) {
+  const nlohmann::json document = nlohmann::json::parse(run.out);
+  nlohmann::json lost = nlohmann::json::object();
+  for (const auto& one : document.at("lost")) {
     lost[one.at("what").get<std::string>()] = one.at("count");
   }
   return lost;
