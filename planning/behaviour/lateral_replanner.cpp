@@ -188,8 +188,6 @@ LateralReplanner::Proposal LateralReplanner::propose(const Question& question,
           options_for(question, shares_cycles() ? Offsets{} : offsets, level.l_step_m));
     }
     const EndOffsetRange ends{offsets.least_m, offsets.most_m};
-    const bool leaves_road = !bounds_.squeezes_past && level.margins.border_margin_m < 0.0;
-    if (leaves_road && obstacles_are_the_reason(question, offsets)) break;
     last = {.plan = cycle->plan(level.margins, ends),
             .beyond_the_edge_m = std::max(0.0, -level.margins.border_margin_m),
             .checked_m = question.ends.most_m,
@@ -202,24 +200,6 @@ LateralReplanner::Proposal LateralReplanner::propose(const Question& question,
   }
   if (!last.plan.chosen) last.checked_m = std::numeric_limits<double>::infinity();
   return last;
-}
-
-/// Whether there would be a path on an empty road, from the middle of the line.
-bool LateralReplanner::obstacles_are_the_reason(const Question& question,
-                                                const Offsets& offsets) const {
-  if (question.obstacles.empty() && !task_.field) return false;
-  const std::vector<Obstacle> nobody;
-  PlanInput input = input_for({.t_s = question.t_s,
-                               .measured = question.measured,
-                               .speed = question.speed,
-                               .ends = question.ends,
-                               .obstacles = nobody});
-  input.static_field = nullptr;
-  input.start = {.s_m = start_.s_m};
-  input.previous_d_m = {};
-  PlanningCycle empty_road(input, vehicle_, options_for(question, offsets, kCoarseGrid_m));
-  return empty_road.plan(bounds_.margin_levels.front(), {offsets.least_m, offsets.most_m})
-      .chosen.has_value();
 }
 
 double LateralReplanner::kept_within_m(const Offsets& offsets) const {

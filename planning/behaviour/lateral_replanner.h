@@ -171,7 +171,6 @@ class LateralReplanner {
   std::shared_ptr<Cycles> cycles_for(const Question& question) const;
   bool shares_cycles() const { return bounds_.squeezes_past; }
   PlanInput input_for(const Question& question) const;
-  bool obstacles_are_the_reason(const Question& question, const Offsets& offsets) const;
   PlanOptions options_for(const Question& question, const Offsets& offsets, double l_step_m) const;
   double held_until_m(const Plan& plan) const;
   PlannedPath kept_path() const;
