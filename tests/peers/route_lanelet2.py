@@ -13,6 +13,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from xml.etree import ElementTree
 
 import lanelet2
 from lanelet2.projection import UtmProjector
@@ -43,8 +44,8 @@ def check(folder, path):
         run = subprocess.run([os.path.join(folder, "roadbed"), "export", path, "-o", output],
                              check=True, capture_output=True, text=True)
         notes = run.stderr.strip().replace(output, "map.osm")
-        first = open(output, encoding="utf-8").read().split("<node", 2)[1]
-        lat, lon = (float(first.split(f'{key}="')[1].split('"')[0]) for key in ("lat", "lon"))
+        first = ElementTree.parse(output).find("node")
+        lat, lon = (float(first.get(key)) for key in ("lat", "lon"))
         projector = UtmProjector(lanelet2.io.Origin(lat, lon), False, False)
         lanelet_map = lanelet2.io.load(output, projector)  # raises if it has complaints
     rules = lanelet2.traffic_rules.create(lanelet2.traffic_rules.Locations.Germany,
