@@ -104,7 +104,7 @@ struct Lane {
   /// The limit that holds at a station; infinite where the source says that there is none.
   std::optional<double> speed_limit_at_mps(double s_m) const;
 
-  /// The least limit anywhere along the lane; empty where the source says none in m/s.
+  /// The least limit along the lane; empty where the source says nothing, or that there is none.
   std::optional<double> least_speed_limit_mps() const;
 
   /// Place on the centreline, clamped to the lane, with its direction over ±5 cm: records of real

@@ -60,4 +60,19 @@ void parse_log(std::string_view bytes, const std::string& name, const LogVisitor
   read_mcap(file, visitor);
 }
 
+void refuse_unusable_log(std::string_view bytes, const std::string& name) {
+  if (bytes.starts_with("#ROSBAG ")) {
+    throw InputError({.file = name,
+                      .found = "is a bag of ROS 1",
+                      .needed = "a log of ROS 2, or MCAP",
+                      .remedy = "convert it: rosbags-convert --src " + name + " --dst FOLDER"});
+  }
+  if (bytes.size() < kMcapStart.size() || bytes.substr(1, 4) != kMcapStart.substr(1, 4)) return;
+  throw InputError({.file = name,
+                    .place = "byte 0",
+                    .found = "is MCAP of another version, or damaged",
+                    .needed = "MCAP 0",
+                    .remedy = "copy it anew, or let mcap recover what there is"});
+}
+
 }  // namespace roadbed::map::logs

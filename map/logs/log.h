@@ -21,4 +21,9 @@ void read_log(const std::filesystem::path& path, const LogVisitor& visitor);
 /// The same of the bytes of one file; `name` stands for it in messages.
 void parse_log(std::string_view bytes, const std::string& name, const LogVisitor& visitor);
 
+/// For bytes that are no log, before they are taken for a table or a cloud.
+/// @throws InputError if they begin as a log that is not read: a bag of ROS 1, or MCAP of another
+///         version or with a damaged start.
+void refuse_unusable_log(std::string_view bytes, const std::string& name);
+
 }  // namespace roadbed::map::logs

@@ -6,10 +6,13 @@
 #include <vector>
 
 #include "roadbed/map/logs/log.h"
-#include "roadbed/map/logs/log_drive.h"
-#include "roadbed/map/logs/log_gaps.h"
 
 namespace roadbed::map::inline logs {
+
+/// A time without messages.
+struct LogGap {
+  std::int64_t from_ns, to_ns;
+};
 
 /// What a log holds of one topic, by the times at which messages were recorded.
 struct TopicContents {
@@ -25,5 +28,9 @@ struct TopicContents {
 /// @throws InputError as read_log does.
 std::vector<TopicContents> contents_of_log(const GoThrough& go_through);
 std::vector<TopicContents> contents_of_log(const std::filesystem::path& path);
+
+/// Gaps of times in order, longer than three times the median interval, which is left in
+/// `median_ns`; 0 of fewer than two.
+std::vector<LogGap> gaps_in(const std::vector<std::int64_t>& times_ns, std::int64_t& median_ns);
 
 }  // namespace roadbed::map::logs

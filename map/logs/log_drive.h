@@ -18,9 +18,6 @@ struct LogDrive {
   std::vector<geometry::TrajectoryPoint> rows = {};
 };
 
-/// A log to go through, once.
-using GoThrough = std::function<void(const LogVisitor&)>;
-
 /// The drive of a log: poses of Odometry, PoseStamped, PoseWithCovarianceStamped or
 /// foxglove.PoseInFrame; what transforms say of the frame base_link (where there is none, of the
 /// only one of that name in a namespace, else of base_footprint); a planned trajectory, NAME#K

@@ -48,4 +48,7 @@ struct LogVisitor {
   std::function<void(const LogTopic&, const LogMessage&)> take;
 };
 
+/// A log to go through, once.
+using GoThrough = std::function<void(const LogVisitor&)>;
+
 }  // namespace roadbed::map::logs

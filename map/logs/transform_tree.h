@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/logs/log_gaps.h"
+#include "roadbed/map/logs/log_contents.h"
 #include "roadbed/map/logs/pose_messages.h"
 
 namespace roadbed::map::inline logs {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -28,12 +27,7 @@ constexpr double kAsksAgainAfter_s = 1.0;  // for a route, where there was none
 constexpr double kYellow_s = 3.0;          // how long one lasts [VwV-StVO to § 37: 3 s at 50 km/h]
 constexpr double kForLong_s = 1e6;
 constexpr double kAtGoal_m = 1.0;
-constexpr double kStops_mps2 = 3.0, kGently_mps2 = 1.0, kBefore_m = 0.5,
-                 kBeside_m = 0.1;  // of a trajectory's end
-
-double stopping_m(double speed_mps, double braking_mps2) {
-  return 0.5 * speed_mps * speed_mps / braking_mps2;
-}
+constexpr double kBefore_m = 0.5, kBeside_m = 0.1;  // of who stands, for a trajectory
 
 void refuse_unusable(const PilotView& view) {
   const auto refuse = [](const std::string& what) {
@@ -69,12 +63,14 @@ bool heads_along(const geometry::Pose2& map_from_vehicle, double heading_rad) {
   return std::cos(map_from_vehicle.heading_rad - heading_rad) >= kAcross;
 }
 
-/// Far beside it, or turned around.
-bool is_away_from(const ReferenceLine& line, const geometry::Pose2& map_from_vehicle) {
-  const geometry::LinePosition at = line.project(map_from_vehicle.position());
-  const double heading_rad = line.at(at.s_m).heading_rad;
-  const Eigen::Vector2d apart = map_from_vehicle.position() - line.at(at.s_m).in_map;
-  return apart.norm() > kTakenAway_m || !heads_along(map_from_vehicle, heading_rad);
+/// Far from it, or turned around.
+/// @param near_s_m  where it was: the line may come over itself.
+bool is_away_from(const ReferenceLine& line, const geometry::Pose2& map_from_vehicle,
+                  double near_s_m) {
+  const Eigen::Vector2d here = map_from_vehicle.position();
+  const ReferencePoint foot = line.at(line.project(here, near_s_m).s_m);
+  return (here - foot.in_map).norm() > kTakenAway_m ||
+         !heads_along(map_from_vehicle, foot.heading_rad);
 }
 
 /// Lanes under the vehicle that it heads along; else the one that fits it best nearby, as on a
@@ -88,10 +84,8 @@ std::vector<RoutePlace> places_to_set_off(const map::RoadMap& road_map,
        match_place(road_map, map_from_vehicle.position(), map_from_vehicle.heading_rad,
                    {.reach_m = reach_m})) {
     if (near.verdict != MatchVerdict::chosen) continue;
-    const Sense sense = near.sense == Sense::against ? Sense::against : Sense::along;
-    const double lane_rad = road_map.lane(near.place.lane).pose_at(near.place.s_m).heading_rad;
-    const double turn_rad = sense == Sense::against ? std::numbers::pi : 0.0;
-    if (heads_along(map_from_vehicle, lane_rad + turn_rad)) places.push_back({near.place, sense});
+    if (!heads_along(map_from_vehicle, near.heading_rad)) continue;
+    places.push_back({near.place, near.sense == Sense::against ? Sense::against : Sense::along});
   }
   return places;
 }
@@ -172,7 +166,10 @@ class Pilot::Impl {
 
   void keep_route(const PilotView& view) {
     if (decision_.detour) return take(*std::exchange(decision_.detour, std::nullopt));
-    if (planner_ && !is_away_from(task_->line, view.ego.map_from_vehicle)) return;
+    if (planner_ &&
+        !is_away_from(task_->line, view.ego.map_from_vehicle, planner_->replanner().s_m())) {
+      return;
+    }
     if (view.t_s < next_question_s_) return;
     next_question_s_ = view.t_s + kAsksAgainAfter_s;
     Found found = route_from(*setup_.road_map, view.ego.map_from_vehicle, setup_.goal);
@@ -251,14 +248,12 @@ class Pilot::Impl {
   /// path, and places to wait at beyond what was planned.
   double stops_by_s_m(const PlannedPath& path, double t_s) const {
     const double s_m = planner_->replanner().s_m();
-    const SpeedState& end = decision_.drive.back();
-    const double planned_m = end.ahead_m;
+    const double planned_m = decision_.drive.back().ahead_m;
     double by_s_m =
         decision_.halt_m ? s_m + *decision_.halt_m : std::numeric_limits<double>::infinity();
     std::vector<bool> drives;
     for (const Obstacle& other : task_->obstacles) drives.push_back(!is_standing(other, t_s));
-    const double look_m = std::max(planned_m + stopping_m(end.speed_mps, kStops_mps2),
-                                   stopping_m(decision_.drive.front().speed_mps, kGently_mps2));
+    const double look_m = farthest_m(decision_);
     const auto stands =
         find_lead(path, s_m, look_m, task_->obstacles, t_s, setup_.vehicle, kBeside_m, drives);
     if (stands) by_s_m = std::min(by_s_m, s_m + stands->gap_m - kBefore_m);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "roadbed/planning/speed/lead.h"
+
 namespace roadbed::planning::inline pilot {
 namespace {
 
@@ -64,8 +66,11 @@ std::vector<SpeedState> in_steps(const std::vector<SpeedState>& drive) {
 }
 
 double needed_mps2(const SpeedState& from, double room_m) {
-  constexpr double kLeast_m = 0.1;
-  return 0.5 * from.speed_mps * from.speed_mps / std::max(kLeast_m, room_m - from.ahead_m);
+  return emergency_stop_mps2(from.speed_mps, room_m - from.ahead_m).value_or(0.0);
+}
+
+double stopping_m(double speed_mps, double braking_mps2) {
+  return 0.5 * speed_mps * speed_mps / braking_mps2;
 }
 
 /// Gives up what of a drive leads too far to stop in time, comfortably if that can be done.
@@ -82,7 +87,7 @@ std::vector<SpeedState> whole_drive(const VehicleState& measured, const PlannerC
   const double foreseen_mps2 = foreseen.size() > 1 ? foreseen[1].acceleration_mps2 : 0.0;
   const auto stop_now = [&](double least_mps2) {
     const double needed = needed_mps2({.speed_mps = measured.speed_mps}, room_m);
-    return stop_from(measured.speed_mps, std::clamp(needed, least_mps2, kHardest_mps2));
+    return stop_from(measured.speed_mps, std::max(needed, least_mps2));
   };
   if (wanted_mps2 < std::min(0.0, foreseen_mps2) - kHarder_mps2) return stop_now(-wanted_mps2);
   if (decision.set_speed_mps <= 0.0) {  // what was foreseen is of a path that is given up
@@ -91,8 +96,7 @@ std::vector<SpeedState> whole_drive(const VehicleState& measured, const PlannerC
   std::vector<SpeedState> drive = in_steps(foreseen);
   const double after_mps2 = braking_after_mps2(foreseen, decision.lead);
   cut_before(drive, room_m);
-  const double needed = needed_mps2(drive.back(), room_m);
-  stop_after(drive, std::clamp(needed, after_mps2, kHardest_mps2));
+  stop_after(drive, std::max(needed_mps2(drive.back(), room_m), after_mps2));
   return drive;
 }
 
@@ -128,6 +132,13 @@ double braking_after_mps2(const std::vector<SpeedState>& drive,
   const double needed_mps2 =
       left_m > 0.0 ? end.speed_mps * end.speed_mps / (2.0 * left_m) : kHardest_mps2;
   return std::clamp(needed_mps2, kComfortable_mps2, kHardest_mps2);
+}
+
+double farthest_m(const PlannerCommand& decision) {
+  const SpeedState &now = decision.drive.front(), &end = decision.drive.back();
+  const double braking_mps2 = std::max(kHarder_mps2, -decision.acceleration_mps2);
+  return std::max(end.ahead_m + stopping_m(end.speed_mps, kComfortable_mps2),
+                  stopping_m(now.speed_mps, braking_mps2));
 }
 
 geometry::Trajectory planned_trajectory(const WayToDrive& way, double t_s,

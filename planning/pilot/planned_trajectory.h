@@ -28,6 +28,9 @@ geometry::Trajectory planned_trajectory(const WayToDrive& way, double t_s,
                                         const PlannerCommand& decision,
                                         const geometry::VehicleShape& vehicle);
 
+/// No trajectory of a decision leads farther than this, wherever it has to have stopped.
+double farthest_m(const PlannerCommand& decision);
+
 /// Straight on from where the vehicle is, to a stop at 3 m/s².
 geometry::Trajectory stopping_trajectory(double t_s, const VehicleState& measured);
 

@@ -108,9 +108,11 @@ bool is_following(const Obstacle& obstacle, double t_s, const VehicleOnLine& veh
 bool comes_behind(const Obstacle& obstacle, double t_s, const VehicleOnLine& vehicle,
                   double speed_mps, const geometry::VehicleShape& shape) {
   constexpr double kWithin_s = 10.0, kStepOfMotion_s = 0.5, kInLane_m = 1.2, kBrakes_mps2 = 4.0;
+  std::optional<double> near_s_m;  // where it was before
   const auto on_line_m = [&](double at_s) -> std::optional<double> {
     const geometry::TrajectoryPoint at = obstacle.motion.at(at_s);
-    const geometry::LinePosition place = vehicle.line.project(at.pose().position());
+    const geometry::LinePosition place = vehicle.line.project(at.pose().position(), near_s_m);
+    near_s_m = place.s_m;
     const ReferencePoint foot = vehicle.line.at(place.s_m);
     const bool is_there = (foot.in_map - at.pose().position()).norm() < kInLane_m &&
                           std::cos(at.heading_rad - foot.heading_rad) > kLeastAlongLine;

@@ -46,7 +46,7 @@ bool is_following(const Obstacle& obstacle, double t_s, const VehicleOnLine& veh
 /// Whether an obstacle, as it is foreseen, comes onto the line from beside within 10 s and is
 /// behind the vehicle then, which keeps its speed, so that it has to keep its distance as who
 /// follows does: who drives on in a roundabout that the vehicle has entered. Braking by 4 m/s² has
-/// to do for it. Up to twenty projections, O(N) each.
+/// to do for it. O(N) in the line's points.
 bool comes_behind(const Obstacle& obstacle, double t_s, const VehicleOnLine& vehicle,
                   double speed_mps, const geometry::VehicleShape& shape);
 

@@ -40,7 +40,7 @@ struct DrivingTask {
   std::vector<ReferenceLine> other_lines = {};
   std::vector<std::vector<StopPoint>> other_stop_points = {};  ///< on each other line
   std::vector<std::size_t> blockers = {};  ///< obstacles that the route leads past, another way
-  std::vector<map::LaneId> missed = {};    ///< lanes to which no change was to be made, likewise
+  std::vector<map::LaneId> missed = {};    ///< lanes that nobody let it change to, by another way
 
   /// Obstacles that are there at a time.
   std::vector<Obstacle> obstacles_at(double t_s) const {

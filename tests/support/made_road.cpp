@@ -1,6 +1,10 @@
 #include "roadbed/tests/support/made_road.h"
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
 
 #include "roadbed/map/load_map.h"
 
@@ -40,6 +44,13 @@ std::string made_section(double s_m, const std::string& left, const std::string&
 std::string made_document(const std::string& body, const std::string& header) {
   return R"(<OpenDRIVE><header revMajor="1" revMinor="8">)" + header + "</header>" + body +
          "</OpenDRIVE>";
+}
+
+std::filesystem::path made_file(const std::string& name, const MadeRoad& road) {
+  const auto file =
+      std::filesystem::path(testing::TempDir()) / fmt::format("{}_{}.xodr", name, ::getpid());
+  std::ofstream(file) << made_document(made_road(road));
+  return file;
 }
 
 map::RoadMap made_map(const std::string& body, const std::string& header) {

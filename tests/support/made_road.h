@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "roadbed/map/model/road_map.h"
@@ -36,6 +37,9 @@ std::string made_section(double s_m, const std::string& left, const std::string&
 /// A whole document around roads and junctions, read. @param header  children of <header>.
 map::RoadMap made_map(const std::string& body, const std::string& header = {});
 std::string made_document(const std::string& body, const std::string& header = {});
+
+/// A file of one road in the tests' temporary folder, of this process.
+std::filesystem::path made_file(const std::string& name, const MadeRoad& road);
 
 /// The lane of that name. @throws std::bad_optional_access if there is none.
 const map::Lane& lane_of(const map::RoadMap& road_map, const std::string& name);

@@ -6,7 +6,6 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
-#include "roadbed/map/files/unusable_log.h"
 #include "roadbed/map/logs/feather.h"
 #include "roadbed/map/logs/log.h"
 #include "roadbed/map/logs/log_drive.h"

@@ -194,8 +194,7 @@ void bind_lane(nb::module_& module) {
             return limits;
           },
           "Pairs of the station from which a limit holds [m] and the limit [m/s], inf where there "
-          "is "
-          "none, None where the source says nothing.")
+          "is none, None where the source says nothing.")
       .def_prop_ro(
           "attributes",
           [](const LaneOfMap& of) {

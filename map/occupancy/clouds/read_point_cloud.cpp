@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "roadbed/map/files/read_file.h"
-#include "roadbed/map/files/unusable_log.h"
 #include "roadbed/map/logs/feather.h"
+#include "roadbed/map/logs/log.h"
 #include "roadbed/map/occupancy/clouds/argoverse_sweeps.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
 

@@ -174,6 +174,16 @@ BesidePoint point_at(const BesideLine& line, double s_m, std::size_t& hint) {
   return {s_m, a.t_m + share * (b.t_m - a.t_m), a.z_m + share * (b.z_m - a.z_m)};
 }
 
+BesideLine clipped(const BesideLine& line, double from_m, double to_m) {
+  std::size_t hint = 0;
+  BesideLine kept{point_at(line, from_m, hint)};
+  for (const BesidePoint& point : line) {
+    if (point.s_m > from_m + 1e-6 && point.s_m < to_m - 1e-6) kept.push_back(point);
+  }
+  kept.push_back(point_at(line, to_m, hint));
+  return kept;
+}
+
 PlacedBorder line_beside(const ReferenceTable& reference, const RoadBorder& border, double from_m,
                          double to_m, BesideFaults& faults, const BesideOptions& options) {
   return BorderPlacer(reference, faults, options).place(border, from_m, to_m);

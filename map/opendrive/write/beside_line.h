@@ -29,6 +29,9 @@ using BesideLine = std::vector<BesidePoint>;
 ///              found.
 BesidePoint point_at(const BesideLine& line, double s_m, std::size_t& hint);
 
+/// The part of a line between two stations.
+BesideLine clipped(const BesideLine& line, double from_m, double to_m);
+
 /// What is wrong with borders beside a reference line: nothing where every cross-section crosses
 /// each of them once, at more than 18°, and no other cross-section before that.
 struct BesideFaults {

@@ -4,12 +4,10 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <optional>
 
 #include "roadbed/map/load_map.h"
@@ -46,9 +44,6 @@ std::string lane(int id, bool may_cross) {
 /// One way, two lanes eastwards or one; in a bend of 200 m radius to the left.
 std::filesystem::path map_of(const Scene& scene) {
   const bool has_two = scene.next_lane != NextLane::none;
-  const std::string file =
-      fmt::format("passing_{}{}{}_{}.xodr", has_two, scene.in_bend, scene.may_cross, ::getpid());
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / file;
   tests::MadeRoad road;
   road.id = "1";
   road.length_m = 800.0;
@@ -59,8 +54,8 @@ std::filesystem::path map_of(const Scene& scene) {
     road.plan_view =
         R"(<geometry s="0" x="0" y="0" hdg="0" length="800"><arc curvature="0.005"/></geometry>)";
   }
-  std::ofstream(path) << tests::made_document(tests::made_road(road));
-  return path;
+  return tests::made_file(fmt::format("passing_{}{}{}", has_two, scene.in_bend, scene.may_cross),
+                          road);
 }
 
 ScenarioPlace place(const char* lane, double s_m) {

@@ -3,11 +3,8 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,12 +33,9 @@ Scenario scenario_of(double start_m, double speed_mps, const std::string& crosse
                               tests::made_lane(-2, mark)) +
       tests::made_section(kLaneEnds_m, "",
                           tests::made_lane(-1, R"(<link><predecessor id="-1"/></link>)"));
-  const auto path = std::filesystem::path(testing::TempDir()) /
-                    fmt::format("letting_in_{}_{}.xodr", crossed, ::getpid());
-  std::ofstream(path) << tests::made_document(tests::made_road(road));
   Scenario scenario;
   scenario.file = "letting_in.json";
-  scenario.map_file = path;
+  scenario.map_file = tests::made_file("letting_in_" + crossed, road);
   scenario.start = {.text = fmt::format("lane:1/0/-1@{}", start_m), .pointer = "/start"};
   scenario.goal = {.text = "lane:1/1/-1@500", .pointer = "/goal"};
   scenario.start_speed_mps = speed_mps;

@@ -3,12 +3,10 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <optional>
 
 #include "roadbed/tests/support/made_road.h"
@@ -39,8 +37,6 @@ std::filesystem::path map_file() {
                         next ? fmt::format(R"(<successor id="{}"/>)", next) : "") +
                 R"(<roadMark sOffset="0" type="broken" color="white" laneChange="both"/>)");
   };
-  const auto path =
-      std::filesystem::path(testing::TempDir()) / fmt::format("merging_{}.xodr", ::getpid());
   tests::MadeRoad road;
   road.id = "1";
   road.length_m = 1500.0;
@@ -48,8 +44,7 @@ std::filesystem::path map_file() {
   road.lanes = tests::made_section(0.0, "", lane(-1, -1) + lane(-2, 0)) +
                tests::made_section(kLaneEnds_m, "",
                                    tests::made_lane(-1, R"(<link><predecessor id="-1"/></link>)"));
-  std::ofstream(path) << tests::made_document(tests::made_road(road));
-  return path;
+  return tests::made_file("merging", road);
 }
 
 ScenarioPlace place(const char* lane, double s_m) {

@@ -2,13 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
-#include <numbers>
-
 #include <algorithm>
-
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 namespace roadbed::tools {
 namespace {

@@ -16,8 +16,8 @@ namespace roadbed::tools::inline commands::inline maps {
 void refuse_other_format(const std::filesystem::path& file, const std::string& map_bytes) {
   const map::Format* own = map::format_of(map_bytes);
   const std::string suffix = map::format_suffix(file);
-  const bool says_format = suffix != ".xml" && !map::is_standard_stream(file);
-  if (own == nullptr || !says_format) return;
+  const bool is_any_xml = suffix == ".xml";
+  if (own == nullptr || is_any_xml || map::is_standard_stream(file)) return;
   for (const map::Format& format : map::formats()) {
     if (!format.is_written() || format.suffix != suffix || suffix == own->suffix) continue;
     throw map::OutputError({.file = file.string(),

@@ -75,8 +75,7 @@ void FilterArguments::declare(Arguments& arguments) {
   arguments
       .add("--range", range_m_,
            "Only points at MIN,MAX from where they were measured [m], of a scan in a frame of its "
-           "own "
-           "from 0,0,0; 0.5,inf leaves out what came from no distance")
+           "own from 0,0,0; 0.5,inf leaves out what came from no distance")
       .separated_by(',')
       .values(2);
   arguments

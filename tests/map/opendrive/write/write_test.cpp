@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -472,43 +471,6 @@ TEST(WriteOpenDrive, KeepsCoordinatesAndTheirSystem) {
   EXPECT_EQ(after.format(), "OpenDRIVE 1.8");
 }
 
-// The way of each driving lane: where it begins and ends.
-std::vector<std::array<Eigen::Vector2d, 2>> ways_of(const RoadMap& road_map) {
-  std::vector<std::array<Eigen::Vector2d, 2>> ways;
-  for (const Lane& lane : road_map.lanes()) {
-    if (!is_drivable(lane.type)) continue;
-    ways.push_back({road_map.to_source(lane.pose_at(0.0).position()),
-                    road_map.to_source(lane.pose_at(lane.length_m()).position())});
-  }
-  std::ranges::sort(ways, {}, [](const auto& way) { return std::pair(way[0].x(), way[0].y()); });
-  return ways;
-}
-
-void expect_same_ways(const RoadMap& before, int minor) {
-  const opendrive::OpenDriveFile file = file_of(before, minor);
-  const auto wanted = ways_of(before), found = ways_of(parse_map(file.bytes, "written.xodr"));
-  ASSERT_EQ(found.size(), wanted.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    for (const std::size_t end : {0U, 1U}) EXPECT_LE((found[i][end] - wanted[i][end]).norm(), 0.01);
-  }
-  for (const auto& [what, count] : file.lost) EXPECT_NE(what, "directions of lanes");
-}
-
-TEST(WriteOpenDrive, LanesKeepTheirDirectionInEveryVersion) {
-  tests::MadeRoad left_hand;
-  left_hand.attributes = R"(rule="LHT")";
-  tests::MadeRoad reversed;
-  reversed.lanes =
-      tests::made_section(0, tests::made_lane(1) + tests::made_lane(2), tests::made_lane(-1));
-  reversed.lanes.replace(reversed.lanes.find("id=\"1\""), 6, R"(id="1" direction="reversed")");
-  for (const tests::MadeRoad& road : {left_hand, reversed}) {
-    for (const int minor : {4, 5, 6, 7, 8}) {
-      SCOPED_TRACE(minor);
-      expect_same_ways(tests::made_map(tests::made_road(road)), minor);
-    }
-  }
-}
-
 TEST(WriteOpenDrive, ALaneIsLeftOnlyWhereTheMapAllowsIt) {
   // Along a lane that narrows, so that its stations are not the road's.
   constexpr auto kMarks = R"(<roadMark sOffset="4" type="broken" laneChange="none"/>
@@ -538,46 +500,6 @@ TEST(WriteOpenDrive, ALaneIsLeftOnlyWhereTheMapAllowsIt) {
       }
     }
   }
-}
-
-TEST(WriteOpenDrive, LanesKeepTheirHeightAboveTheRoad) {
-  const auto kerb = [](int id, const char* heights) {
-    return tests::made_lane(id, heights, "sidewalk", 2.0);
-  };
-  tests::MadeRoad road;
-  road.id = "1";
-  road.elevation = R"(<elevation s="0" a="5" b="0.02" c="0" d="0"/>)";
-  road.lanes = tests::made_section(
-      0,
-      kerb(2, R"(<height sOffset="0" inner="0.02" outer="0.12"/>
-                    <height sOffset="30" inner="0.12" outer="0.15"/>)") +
-          tests::made_lane(1),
-      tests::made_lane(-1) + kerb(-2, R"(<height sOffset="0" inner="0.12" outer="0.12"/>)"));
-  const RoadMap before = tests::made_map(tests::made_road(road));
-  for (const int minor : {4, 8}) {
-    const opendrive::OpenDriveFile file = file_of(before, minor);
-    EXPECT_LE(file.largest_height_error_m, 1e-3);
-    EXPECT_EQ(file.bytes.find("superelevation"), std::string::npos);
-    const RoadMap after = parse_map(file.bytes, "written.xodr");
-    for (const Lane& lane : before.lanes()) {
-      const Lane& other = tests::lane_of(after, lane.name);
-      for (double s_m = 0.5; s_m < lane.length_m(); s_m += 1.0) {
-        for (const auto line : {&Lane::left, &Lane::right}) {
-          EXPECT_NEAR(Lane::height_at(other.*line, s_m), Lane::height_at(lane.*line, s_m), 1e-3)
-              << lane.name << " at " << s_m;
-        }
-      }
-    }
-  }
-}
-
-TEST(WriteOpenDrive, CountsRoadsThatHaveAnotherId) {
-  tests::MadeRoad road;
-  EXPECT_EQ(file_of(tests::made_map(tests::made_road(road))).lost,
-            (std::vector<std::pair<std::string, std::size_t>>{
-                {"ids of roads, which are no whole numbers", 1}}));
-  road.id = "7";
-  EXPECT_TRUE(file_of(tests::made_map(tests::made_road(road))).lost.empty());
 }
 
 TEST(WriteOpenDrive, KnowsVersionsFrom4To8Only) {
