@@ -1,8 +1,10 @@
 #include "roadbed/map/edit/road_cut.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <set>
 #include <string_view>
 #include <vector>
@@ -150,6 +152,62 @@ void cut_profiles(pugi::xml_node road, const Cut& cut) {
   cut_cubics(children(road.child("lanes"), "laneOffset"), "s", cut);
 }
 
+// Heights over t at a station: a + b·Δt + c·Δt² + d·Δt³ by the t where they begin.
+using Shape = std::map<double, std::array<double, 4>>;
+
+std::array<double, 4> cubic_at(const Shape& shape, double t_m) {
+  auto holding = shape.upper_bound(t_m);
+  if (holding != shape.begin()) --holding;  // the first holds before itself, too
+  const auto& [a, b, c, d] = holding->second;
+  const double by_m = t_m - holding->first;
+  return {a + by_m * (b + by_m * (c + by_m * d)), b + by_m * (2.0 * c + by_m * 3.0 * d),
+          c + 3.0 * d * by_m, d};
+}
+
+Shape between(const Shape& first, const Shape& second, double share) {
+  Shape shape;
+  for (const Shape* one : {&first, &second}) {
+    for (const auto& [t_m, cubic] : *one) {
+      const auto here = cubic_at(first, t_m), there = cubic_at(second, t_m);
+      for (std::size_t i = 0; i < 4; ++i) shape[t_m][i] = std::lerp(here[i], there[i], share);
+    }
+  }
+  return shape;
+}
+
+// Linear between stations, constant before the first and after the last.
+Shape shape_at(const std::map<double, Shape>& shapes, double s_m) {
+  const auto after = shapes.upper_bound(s_m);
+  if (after == shapes.begin()) return after->second;
+  const auto before = std::prev(after);
+  if (after == shapes.end()) return before->second;
+  return between(before->second, after->second,
+                 (s_m - before->first) / (after->first - before->first));
+}
+
+void cut_shapes(pugi::xml_node lateral, const Cut& cut) {
+  constexpr std::array<const char*, 4> names = {"a", "b", "c", "d"};
+  std::map<double, Shape> shapes, kept;
+  for (const auto record : children(lateral, "shape")) {
+    std::array<double, 4>& cubic = shapes[number(record, "s")][number(record, "t")];
+    for (std::size_t i = 0; i < 4; ++i) cubic[i] = number(record, names[i]);
+    lateral.remove_child(record);
+  }
+  if (shapes.empty()) return;
+  for (const auto& [s_m, shape] : shapes) {
+    if (s_m > cut.from_m && s_m < cut.to_m) kept.emplace(s_m, shape);
+  }
+  for (const double s_m : {cut.from_m, cut.to_m}) kept.emplace(s_m, shape_at(shapes, s_m));
+  for (const auto& [s_m, shape] : kept) {
+    for (const auto& [t_m, cubic] : shape) {
+      pugi::xml_node record = lateral.append_child("shape");
+      set_number(record, "s", s_m - cut.from_m);
+      set_number(record, "t", t_m);
+      for (std::size_t i = 0; i < 4; ++i) set_number(record, names[i], cubic[i]);
+    }
+  }
+}
+
 bool is_inside(double s_m, const Cut& cut) {
   return !(cut.at_start && s_m < cut.from_m) && !(cut.at_end && s_m > cut.to_m);
 }
@@ -263,6 +321,20 @@ void remember_geometry(pugi::xml_node road, const RoadCut& whole, const char* en
   }
 }
 
+// What of a lateral profile is kept whole, and cut anew from there.
+constexpr std::array<const char*, 2> kAcross = {"shape", "crossSectionSurface"};
+
+void remember_lateral(pugi::xml_node road) {
+  const pugi::xml_node lateral = road.child("lateralProfile");
+  pugi::xml_node memory = clip_memory(road);
+  if (memory.child("lateralProfile")) return;
+  for (const char* name : kAcross) {
+    for (const auto one : lateral.children(name)) {
+      child_of(memory, "lateralProfile").append_copy(one);
+    }
+  }
+}
+
 }  // namespace
 
 RoadCut road_cut(pugi::xml_node road) {
@@ -301,7 +373,6 @@ void remember_cut(pugi::xml_node road, const RoadCut& whole) {
 }
 
 bool can_be_cut(pugi::xml_node road) {
-  if (road.child("lateralProfile").child("shape")) return false;
   for (const auto section : road.child("lanes").children("laneSection")) {
     const std::string_view single = section.attribute("singleSide").value();
     if (single == "true" || single == "1") return false;
@@ -316,6 +387,7 @@ void cut_road(pugi::xml_node road, double from_m, double to_m) {
   RoadCut whole = road_cut(road);
   if (cut.at_start) remember_geometry(road, whole, "from", from_m);
   if (cut.at_end) remember_geometry(road, whole, "to", to_m);
+  remember_lateral(road);
   cut_plan_view(road.child("planView"), from_m, cut.at_end ? to_m : HUGE_VAL);
   cut_profiles(road, cut);
   whole.section += cut_sections(road.child("lanes"), length_m, cut);
@@ -324,6 +396,27 @@ void cut_road(pugi::xml_node road, double from_m, double to_m) {
   if (cut.at_end) whole.to_m = whole.from_m + to_m;
   if (cut.at_start) whole.from_m += from_m;
   remember_cut(road, whole);
+  restore_lateral(road);
+}
+
+void restore_lateral(pugi::xml_node road) {
+  pugi::xml_node memory = find_clip_memory(road), lateral = road.child("lateralProfile");
+  const pugi::xml_node kept = memory.child("lateralProfile");
+  if (!kept) return;
+  for (const char* name : kAcross) {
+    for (const auto own : children(lateral, name)) lateral.remove_child(own);
+    for (const auto whole : kept.children(name)) lateral.append_copy(whole);
+  }
+  const RoadCut part = road_cut(road);
+  if (part.is_whole()) {
+    memory.remove_child(kept);
+    return;
+  }
+  const Cut cut{part.from_m, part.to_m, !part.has_start(), !part.has_end()};
+  cut_shapes(lateral, cut);
+  for (const auto& function : lateral.select_nodes("crossSectionSurface//*[coefficients]")) {
+    cut_cubics(children(function.node(), "coefficients"), "s", cut);
+  }
 }
 
 }  // namespace roadbed::map::edit

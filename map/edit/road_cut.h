@@ -28,8 +28,7 @@ void remember_cut(pugi::xml_node road, const RoadCut& cut);
 pugi::xml_node clip_memory(pugi::xml_node parent);
 pugi::xml_node find_clip_memory(pugi::xml_node parent);
 
-/// Whether a road can be cut between its ends: not where its lane sections speak of one side only,
-/// and not where it has a lateral shape.
+/// Whether a road can be cut between its ends: not where its lane sections speak of one side only.
 bool can_be_cut(pugi::xml_node road);
 
 /// Leaves of a road what lies between two of its own stations, as exactly as it was: the reference
@@ -40,5 +39,9 @@ bool can_be_cut(pugi::xml_node road);
 /// stands in its clip memory.
 /// @param from_m, to_m  stations, 0 ≤ from < to ≤ the road's length; a whole road stays as it is.
 void cut_road(pugi::xml_node road, double from_m, double to_m);
+
+/// Gives a part of a road the lateral shapes and surface strips that the whole road has there, as
+/// its clip memory keeps them; a whole road has them as they were.
+void restore_lateral(pugi::xml_node road);
 
 }  // namespace roadbed::map::edit

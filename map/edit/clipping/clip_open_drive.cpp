@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <map>
 #include <memory>
 #include <set>
@@ -50,7 +53,12 @@ class RoadClipper {
     result.count("parts of roads with an id of their own", parts_);
     result.count("roads outside, left out", outside_);
     result.count("roads without a usable reference line, left out", unusable_);
-    result.count("roads that cannot be cut, kept whole", uncut_);
+    result.count("roads that cannot be cut, kept whole", uncut_.size());
+    if (!uncut_.empty()) {
+      result.notes.push_back(
+          fmt::format("not cut, for a lane section of one side (singleSide): road {}",
+                      fmt::join(uncut_, ", ")));
+    }
     result.count("road links taken off", settled.links);
     result.count("connections of junctions taken off", settled.connections);
     result.count("junctions without a connection, left out", settled.junctions);
@@ -72,7 +80,7 @@ class RoadClipper {
     const bool inside = spans.front().from_m <= 0.0 && spans.front().to_m >= road.length_m;
     if (inside || options_.whole || !can_be_cut(node)) {
       ++whole_;
-      uncut_ += inside || options_.whole ? 0 : 1;
+      if (!inside && !options_.whole) uncut_.push_back(text(node, "id"));
       return;
     }
     ++cut_;
@@ -93,7 +101,8 @@ class RoadClipper {
   FreshIds fresh_;
   pugi::xml_node last_;  // behind which new roads stand
   std::set<pugi::xml_node> judged_;
-  std::size_t whole_ = 0, cut_ = 0, parts_ = 0, outside_ = 0, unusable_ = 0, uncut_ = 0;
+  std::size_t whole_ = 0, cut_ = 0, parts_ = 0, outside_ = 0, unusable_ = 0;
+  std::vector<std::string> uncut_;  // their ids
 };
 
 struct OpenDriveMap {

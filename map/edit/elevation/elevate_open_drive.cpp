@@ -12,6 +12,7 @@
 #include "roadbed/map/edit/elevation/height_network.h"
 #include "roadbed/map/edit/elevation/profile_cubics.h"
 #include "roadbed/map/edit/elevation/road_stations.h"
+#include "roadbed/map/edit/road_cut.h"
 #include "roadbed/map/edit/xml_edit.h"
 #include "roadbed/map/opendrive/read.h"
 
@@ -217,6 +218,7 @@ class Elevator {
     for (const char* name : {"superelevation", "crossfall", "shape", "crossSectionSurface"}) {
       for (const auto record : children(lateral, name)) lateral.remove_child(record);
     }
+    find_clip_memory(node).remove_child("lateralProfile");
     if (leans_m > kLevelM) {
       if (roll_s_m.front() > 0.0) {  // as from the first one on, and to the end as at the last
         roll_s_m.insert(roll_s_m.begin(), 0.0);

@@ -183,13 +183,61 @@ bool lengthen(pugi::xml_node list, pugi::xml_node structure, double offset_m) {
   return true;
 }
 
+// Names, without "Start", of what runs from Start to End over a repetition.
+std::vector<std::string> running(pugi::xml_node repeat) {
+  std::vector<std::string> names;
+  for (const auto start : repeat.attributes()) {
+    const std::string_view name = start.name();
+    if (!name.ends_with("Start")) continue;
+    names.emplace_back(name.substr(0, name.size() - 5));
+    if (!repeat.attribute((names.back() + "End").c_str())) names.pop_back();
+  }
+  return names;
+}
+
+// Makes one of two parts of a repetition: the second begins where the first ends, or a step behind,
+// and all that runs over them runs on.
+bool repeat_on(pugi::xml_node first, pugi::xml_node second, double offset_m) {
+  const double s_m = number(first, "s"), length_m = number(first, "length"),
+               step_m = number(first, "distance"), apart_m = number(second, "s") + offset_m - s_m,
+               both_m = apart_m + number(second, "length");
+  const double steps = step_m > 0.0 ? apart_m / step_m : 0.0;
+  const bool meets = step_m > 0.0 ? std::abs(steps - std::round(steps)) * step_m < kSameSpotM &&
+                                        apart_m > length_m - kSameSpotM &&
+                                        apart_m < length_m + step_m + kSameSpotM
+                                  : std::abs(apart_m - length_m) < kSameSpotM;
+  if (!meets || step_m != number(second, "distance") || !(both_m > 0.0)) return false;
+  const auto names = running(first);
+  const auto runs_on = [&](const std::string& name) {
+    const double from = number(first, (name + "Start").c_str());
+    const double to = number(second, (name + "End").c_str());
+    const auto is_on_line = [&](pugi::xml_node repeat, const char* end, double at_m) {
+      const double there = number(repeat, (name + end).c_str());
+      return std::abs(std::lerp(from, to, at_m / both_m) - there) < kSameSpotM;
+    };
+    return is_on_line(first, "End", length_m) && is_on_line(second, "Start", apart_m);
+  };
+  if (!std::all_of(names.begin(), names.end(), runs_on)) return false;
+  for (const std::string& name : names) {
+    const std::string end = name + "End";
+    set_text(first, end.c_str(), text(second, end.c_str()));
+  }
+  set_number(first, "length", both_m);
+  return true;
+}
+
 // A repeated object of which each part has some.
 bool repeat_further(pugi::xml_node list, pugi::xml_node object, double offset_m) {
   auto own = list.find_child_by_attribute("object", "id", object.attribute("id").value());
   if (!own) return false;
-  pugi::xml_node behind = own.child("repeat");
+  const std::vector<pugi::xml_node> repeats = children(own, "repeat");
+  pugi::xml_node behind = repeats.empty() ? pugi::xml_node() : repeats.back();
   for (const auto repeat : object.children("repeat")) {
     if (!behind) break;
+    if (std::any_of(repeats.begin(), repeats.end(),
+                    [&](auto one) { return repeat_on(one, repeat, offset_m); })) {
+      continue;
+    }
     behind = own.insert_copy_after(repeat, behind);
     set_number(behind, "s", number(repeat, "s") + offset_m);
   }
@@ -216,8 +264,8 @@ void join_furniture(pugi::xml_node road, pugi::xml_node other, const char* list,
     pugi::xml_node copy = own.append_copy(item);
     if (!copy.attribute("s")) continue;
     set_number(copy, "s", number(item, "s") + offset_m);
-    for (const auto& corner : copy.select_nodes(".//cornerRoad")) {
-      set_number(corner.node(), "s", number(corner.node(), "s") + offset_m);
+    for (const auto& inside : copy.select_nodes(".//cornerRoad | repeat")) {
+      set_number(inside.node(), "s", number(inside.node(), "s") + offset_m);
     }
   }
 }
@@ -265,6 +313,7 @@ void join_roads(pugi::xml_node first, pugi::xml_node second) {
       rest.has_end() && whole.has_start() ? rest.length_m : offset_m + number(second, "length"));
   whole.to_m = rest.to_m;
   remember_cut(first, whole);
+  restore_lateral(first);
 }
 
 }  // namespace roadbed::map::edit::merging

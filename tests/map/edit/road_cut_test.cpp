@@ -83,6 +83,53 @@ TEST(RoadCut, KeepsItsBordersWhereTheyWere) {
   }
 }
 
+// Height over t: linear between stations, each of which has breaks of its own; a strip whose width
+// is a cubic, with a hump across it, has it where it was, too.
+TEST(RoadCut, KeepsItsSurfaceWhereItWas) {
+  const auto road = [](const std::string& lateral) {
+    return XmlDocument(
+        R"(<OpenDRIVE><header revMajor="1" revMinor="8"/><road id="1" length="300" junction="-1">)"
+        R"(<planView><geometry s="0" x="0" y="0" hdg="0" length="300"><line/></geometry></planView>)"
+        R"(<lateralProfile>)" +
+            lateral +
+            R"(</lateralProfile><lanes><laneSection s="0"><center><lane id="0" type="none"/>)"
+            R"(</center><right><lane id="-1" type="driving"><width sOffset="0" a="3.5" b="0" c="0" )"
+            R"(d="0"/></lane></right></laneSection></lanes></road></OpenDRIVE>)",
+        "shape.xodr");
+  };
+  for (const std::string lateral :
+       {R"(<shape s="0" t="-5" a="0.1" b="-0.02" c="0.01" d="0"/><shape s="0" t="0" a="0" b="0" )"
+        R"(c="0" d="0"/><shape s="200" t="-4" a="0.3" b="-0.06" c="0" d="0.001"/>)",
+        R"(<crossSectionSurface><tOffset><coefficients s="0" a="0" b="0" c="0" d="0"/></tOffset>)"
+        R"(<surfaceStrips><strip id="-1"><constant><coefficients s="0" a="0.1" b="0.01" c="0" )"
+        R"(d="1e-7"/></constant><linear><coefficients s="0" a="0.02" b="0" c="1e-6" d="0"/>)"
+        R"(</linear></strip></surfaceStrips></crossSectionSurface>)"}) {
+    const RoadMap whole = map_of(road(lateral));
+    for (const auto& [from_m, to_m] : {std::pair{0.0, 120.0}, {37.5, 240.0}, {210.0, 300.0}}) {
+      const XmlDocument xml = road(lateral);
+      ASSERT_TRUE(can_be_cut(road_of(xml)));
+      cut_road(road_of(xml), from_m, to_m);
+      const RoadMap cut = map_of(xml);
+      const LaneLine &border = cut.lanes()[0].right, &there = whole.lanes()[0].right;
+      for (std::size_t i = 0; i < border.z_m.size(); ++i) {
+        const double x_m = cut.to_source(border.in_map.points()[i]).x();
+        const auto& stations = there.in_map.stations_m();
+        std::size_t k = 1;
+        while (k + 1 < stations.size() && stations[k] < x_m) ++k;
+        const double at = (x_m - stations[k - 1]) / (stations[k] - stations[k - 1]);
+        EXPECT_NEAR(border.z_m[i], std::lerp(there.z_m[k - 1], there.z_m[k], at), 0.01) << x_m;
+      }
+    }
+    const XmlDocument first = road(lateral), second = road(lateral), before = road(lateral);
+    cut_road(road_of(first), 0.0, 90.0);
+    cut_road(road_of(second), 90.0, 300.0);
+    join_roads(road_of(first), road_of(second));
+    EXPECT_TRUE(say_the_same(road_of(first).child("lateralProfile"),
+                             road_of(before).child("lateralProfile"),
+                             [](pugi::xml_node) { return false; }));
+  }
+}
+
 TEST(RoadCut, SaysWhichPartItIs) {
   const XmlDocument xml = curved_road();
   const double length_m = length_of(xml);

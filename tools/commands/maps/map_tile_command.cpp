@@ -69,6 +69,7 @@ class TileCommand : public Command {
     const TileRange range = tiles_of(map::parse_map(bytes, name), name);
     const map::Clipper clip = map::make_clipper(std::move(bytes), name, options_);
     Json tiles = Json::array();
+    std::vector<std::string> notes;
     for (long y = range.from_y; y <= range.to_y; ++y) {
       for (long x = range.from_x; x <= range.to_x; ++x) {
         const Eigen::Vector2d corner(static_cast<double>(x) * side_m_,
@@ -78,6 +79,7 @@ class TileCommand : public Command {
         if (tile.bytes.empty()) continue;
         const std::string file = fmt::format("{}_{}{}", x, y, suffix());
         folder.write(file, tile.bytes);
+        for (const std::string& note : tile.notes) notes.push_back(file + ": " + note);
         tiles.push_back({{"file", file},
                          {"min_x_m", corner.x()},
                          {"min_y_m", corner.y()},
@@ -93,7 +95,9 @@ class TileCommand : public Command {
     const Json index = {{"roadbed_map_tiles", 1}, {"side_m", side_m_}, {"tiles", std::move(tiles)}};
     folder.write("tiles.json", map::json_text(index, 2) + "\n");
     folder.commit();
-    if (!common.quiet) fmt::print(streams.err, "{}: {} tiles\n", output_.string(), count);
+    if (common.quiet) return Exit::ok;
+    fmt::print(streams.err, "{}: {} tiles\n", output_.string(), count);
+    for (const std::string& note : notes) fmt::print(streams.err, "note: {}\n", note);
     return Exit::ok;
   }
 
