@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <string_view>
 #include <vector>
 
+#include "roadbed/map/edit/named_roads.h"
 #include "roadbed/map/edit/road_cut.h"
 #include "roadbed/map/edit/xml_edit.h"
 
@@ -35,14 +37,25 @@ std::string FreshIds::fresh() {
 }
 
 void NewIds::apply(pugi::xml_node root) const {
-  for (const auto road : root.children("road")) apply_to_road(road);
-  for (const auto controller : root.children("controller")) {
+  for (const auto element : root.children()) apply_to(element);
+}
+
+void NewIds::apply_to(pugi::xml_node element) const {
+  const std::string_view kind = element.name();
+  if (kind == "road") apply_to_road(element);
+  if (kind == "junction") rename(element, "id", junctions);
+  if (kind == "junctionGroup") rename(element, "id", groups);
+  if (kind == "station") rename(element, "id", stations);
+  if (kind == "controller") rename(element, "id", controllers);
+  for (const auto control : element.children("control")) rename(control, "signalId", signals);
+  for (const auto controller : element.children("controller")) {
     rename(controller, "id", controllers);
-    for (const auto control : controller.children("control")) {
-      rename(control, "signalId", signals);
-    }
   }
-  for (const auto junction : root.children("junction")) apply_to_junction(junction);
+  for (const auto reference : element.children("junctionReference")) {
+    rename(reference, "junction", junctions);
+  }
+  for_each_named_road(element,
+                      [&](const NamedRoad& named) { rename(named.node, named.attribute, roads); });
 }
 
 void NewIds::apply_to_road(pugi::xml_node road) const {
@@ -50,31 +63,16 @@ void NewIds::apply_to_road(pugi::xml_node road) const {
   rename(road, "id", roads);
   rename(road, "junction", junctions);
   for (const auto end : road.child("link").children()) {
-    rename(end, "elementId", text(end, "elementType") == "junction" ? junctions : roads);
+    if (text(end, "elementType") == "junction") rename(end, "elementId", junctions);
   }
   for (const auto signal : road.child("signals").children()) {
     rename(signal, "id", signals);
     for (const auto other : signal.children("dependency")) rename(other, "id", signals);
+    for (const auto other : signal.children("reference")) {
+      rename(other, "elementId", text(other, "elementType") == "object" ? objects : signals);
+    }
   }
   for (const auto object : road.child("objects").children()) rename(object, "id", objects);
-}
-
-void NewIds::apply_to_junction(pugi::xml_node junction) const {
-  rename(junction, "id", junctions);
-  rename(junction, "mainRoad", roads);
-  for (const auto controller : junction.children("controller")) {
-    rename(controller, "id", controllers);
-  }
-  for (const auto priority : junction.children("priority")) {
-    rename(priority, "high", roads);
-    rename(priority, "low", roads);
-  }
-  for (const auto connection : junction.children("connection")) {
-    for (const char* role : {"incomingRoad", "connectingRoad", "linkedRoad"}) {
-      rename(connection, role, roads);
-    }
-    for (const auto end : connection.children()) rename(end, "elementId", roads);
-  }
 }
 
 bool is_in_order(pugi::xml_node root, const char* kind) {

@@ -26,14 +26,16 @@ using NameChanges = std::map<std::string, std::string>;
 
 /// New ids of what one file of OpenDRIVE holds, by kind.
 struct NewIds {
-  NameChanges roads, junctions, controllers, signals, objects;
+  NameChanges roads, junctions, groups, stations, controllers, signals, objects;
 
   /// Gives them to the elements, and to all that names these.
   void apply(pugi::xml_node root) const;
 
+  /// The same of one element of the root.
+  void apply_to(pugi::xml_node element) const;
+
  private:
   void apply_to_road(pugi::xml_node road) const;
-  void apply_to_junction(pugi::xml_node junction) const;
 };
 
 /// Whether the elements of a kind stand in order of their numbers.

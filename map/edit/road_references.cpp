@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/map/edit/named_roads.h"
 #include "roadbed/map/edit/road_cut.h"
 #include "roadbed/map/edit/xml_edit.h"
 
@@ -43,6 +44,20 @@ class Roads {
     return find(road, [&](const RoadCut& cut) { return cut.from_m <= s_m && s_m <= cut.to_m; });
   }
 
+  // The part that has most of a stretch; none that has only its end.
+  const Part* with_stretch(const std::string& road, double from_m, double to_m) const {
+    if (from_m == to_m) return with_station(road, from_m);
+    const Part* best = nullptr;
+    double most_m = 0.0;
+    const auto found = parts_.find(road);
+    if (found == parts_.end()) return nullptr;
+    for (const Part& part : found->second) {
+      const double shared_m = std::min(part.cut.to_m, to_m) - std::max(part.cut.from_m, from_m);
+      if (shared_m > most_m) best = &part, most_m = shared_m;
+    }
+    return best;
+  }
+
   const Part* any(const std::string& road) const {
     return find(road, [](const RoadCut&) { return true; });
   }
@@ -63,7 +78,8 @@ class Roads {
 // A new element of the root behind those of its kind, or where they have to stand.
 pugi::xml_node insert_in_root(pugi::xml_node root, pugi::xml_node like) {
   pugi::xml_node after;
-  for (const char* before : {"header", "road", "controller", "junction"}) {
+  for (const char* before :
+       {"header", "road", "controller", "junction", "junctionGroup", "station"}) {
     for (const auto node : root.children(before)) after = node;
     if (std::string_view(before) == like.name()) break;
   }
@@ -100,7 +116,18 @@ void restore_list(pugi::xml_node road, const RoadCut& cut, const char* list) {
   if (kept) find_clip_memory(road).remove_child(kept);
 }
 
+void restore_position(pugi::xml_node signal) {
+  pugi::xml_node memory = find_clip_memory(signal);
+  const pugi::xml_node kept = memory.child("positionRoad");
+  if (!kept) return;
+  signal.remove_child("positionRoad");
+  signal.insert_copy_before(kept, memory);
+  memory.remove_child(kept);
+  if (!memory.first_child()) signal.remove_child(memory);
+}
+
 void restore_road(pugi::xml_node road) {
+  for (const auto signal : road.child("signals").children("signal")) restore_position(signal);
   pugi::xml_node memory = find_clip_memory(road);
   if (!memory) return;
   if (const auto kept = memory.child("link")) {
@@ -111,6 +138,13 @@ void restore_road(pugi::xml_node road) {
   if (const auto in = memory.child("in")) {
     set_text(road, "junction", text(in, "junction"));
     memory.remove_child(in);
+  }
+  for (const char* list : {"railroad", "surface"}) {
+    if (const auto kept = memory.child(list)) {
+      road.remove_child(list);
+      insert_ordered(road, kept, kRoadOrder);
+      memory.remove_child(kept);
+    }
   }
   const RoadCut cut = road_cut(road);
   restore_list(road, cut, "signals");
@@ -147,6 +181,8 @@ class Settler {
     for (const auto one : root_.children("controller")) controllers_.insert(text(one, "id"));
     settle_all("junction", [&](pugi::xml_node one) { return settle_junction(one); });
     for (const auto one : root_.children("junction")) note_junction(one);
+    settle_all("junctionGroup", [&](pugi::xml_node one) { return settle_group(one); });
+    settle_all("station", [&](pugi::xml_node one) { return settle_station(one); });
     for (const auto& [id, parts] : roads_.all()) {
       for (const Part& part : parts) settle_road(part);
     }
@@ -169,56 +205,146 @@ class Settler {
     }
   }
 
-  Fate settle_controller(pugi::xml_node controller) {
+  struct Kept {
     std::size_t left = 0, gone = 0;
-    for (const auto control : children(controller, "control")) {
-      if (signals_.contains(text(control, "signalId"))) {
-        ++left;
-        continue;
+  };
+
+  // Takes those children off that do not stay.
+  template <typename Stays>
+  static Kept keep(pugi::xml_node parent, const char* name, const Stays& stays) {
+    Kept kept;
+    for (const auto child : children(parent, name)) {
+      if (stays(child)) {
+        ++kept.left;
+      } else {
+        parent.remove_child(child);
+        ++kept.gone;
       }
-      controller.remove_child(control);
-      ++gone;
     }
-    if (gone == 0) return Fate::same;
-    settled_.controls += left > 0 ? gone : 0;
-    return left > 0 ? Fate::changed : Fate::forgotten;
+    return kept;
   }
 
+  Fate settle_controller(pugi::xml_node controller) {
+    const Kept controls = keep(controller, "control", [&](pugi::xml_node one) {
+      return signals_.contains(text(one, "signalId"));
+    });
+    settled_.controls += controls.left > 0 ? controls.gone : 0;
+    return fate(controls, controls.gone > 0, false);
+  }
+
+  // A junction stands on connections, or on two sections of roads that cross, and a virtual one on
+  // its main road.
   Fate settle_junction(pugi::xml_node junction) {
-    std::size_t left = 0, gone = 0;
-    bool known = false, changed = false;
-    for (const auto connection : children(junction, "connection")) {
-      known = known || knows(connection);
-      if (settle_connection(junction, connection, changed)) {
-        ++left;
-        continue;
-      }
-      junction.remove_child(connection);
-      ++gone;
-    }
-    if (left == 0 && gone == 0) return Fate::same;  // it never had any
-    if (left == 0) {
+    const bool known = knows(junction);
+    bool changed = false;
+    const Kept connections = keep(junction, "connection", [&](pugi::xml_node one) {
+      return settle_connection(junction, one, changed);
+    });
+    const auto is_there = [&](pugi::xml_node one) { return settle_names(one, false, changed); };
+    const auto is_whole = [&](pugi::xml_node one) { return settle_names(one, true, changed); };
+    const Kept sections = keep(junction, "roadSection", is_there);
+    const bool stands = connections.left > 0 || sections.left > 1 ||
+                        connections.gone + sections.gone == 0;  // it never had any
+    if (!stands || !is_there(junction)) {
       settled_.junctions += known ? 1 : 0;
       return known ? Fate::gone : Fate::forgotten;
     }
-    settled_.connections += gone;
-    for (const auto priority : children(junction, "priority")) {
-      if (roads_.has(text(priority, "high")) && roads_.has(text(priority, "low"))) continue;
-      junction.remove_child(priority);
-      ++gone;
-    }
-    for (const auto controller : children(junction, "controller")) {
-      if (controllers_.contains(text(controller, "id"))) continue;
-      junction.remove_child(controller);
-      ++gone;
-    }
-    return gone > 0 || changed ? Fate::changed : Fate::same;
+    settled_.connections += connections.gone;
+    const std::size_t others =
+        keep(junction, "priority", is_there).gone + keep(junction, "crossPath", is_whole).gone +
+        keep(junction, "boundary",
+             [&](pugi::xml_node one) { return keep(one, "segment", is_whole).gone == 0; })
+            .gone +
+        keep(junction, "controller", [&](pugi::xml_node one) {
+          return controllers_.contains(text(one, "id"));
+        }).gone;
+    changed = changed || connections.gone + sections.gone + others > 0;
+    return changed ? Fate::changed : Fate::same;
   }
 
-  bool knows(pugi::xml_node connection) const {
-    return roads_.has(text(connection, "incomingRoad")) ||
-           roads_.has(text(connection, "connectingRoad")) ||
-           roads_.has(text(connection, "linkedRoad"));
+  Fate settle_group(pugi::xml_node group) const {
+    bool known = false;
+    const Kept junctions = keep(group, "junctionReference", [&](pugi::xml_node one) {
+      const std::string id = text(one, "junction");
+      const bool is_there = junctions_.contains(id);
+      known = known || is_there ||
+              find_clip_memory(root_).find_child_by_attribute("junction", "id", id.c_str());
+      return is_there;
+    });
+    return fate(junctions, junctions.gone > 0, known);
+  }
+
+  Fate settle_station(pugi::xml_node station) const {
+    const bool known = knows(station);
+    bool changed = false;
+    const Kept platforms = keep(station, "platform", [&](pugi::xml_node platform) {
+      const Kept segments = keep(platform, "segment", [&](pugi::xml_node one) {
+        return settle_names(one, false, changed);
+      });
+      changed = changed || segments.gone > 0;
+      return segments.left > 0 || segments.gone == 0;
+    });
+    return fate(platforms, changed, known);
+  }
+
+  static Fate fate(const Kept& parts, bool changed, bool known) {
+    if (parts.left == 0 && parts.gone > 0) return known ? Fate::gone : Fate::forgotten;
+    return changed ? Fate::changed : Fate::same;
+  }
+
+  // Whether an element names a road of which anything is there.
+  bool knows(pugi::xml_node element) const {
+    bool known = false;
+    for_each_named_road(element,
+                        [&](const NamedRoad& named) { known = known || roads_.has(named.road()); });
+    return known;
+  }
+
+  // A station of a whole road, or what the words of a boundary's segment stand for.
+  static double station_m(const std::pair<pugi::xml_node, const char*>& station,
+                          const RoadCut& cut) {
+    const std::string written = text(station.first, station.second);
+    const double s_m = written == "end" ? cut.length_m : number(station.first, station.second);
+    return std::clamp(s_m, 0.0, cut.length_m);
+  }
+
+  // Whether the roads that an element names are there, where it names them; then they are called as
+  // they are called now, and stations count from where they begin now.
+  // @param whole  a stretch has to be there from end to end; else it is shortened.
+  bool settle_names(pugi::xml_node element, bool whole, bool& changed) const {
+    for (const NamedRoad& named : named_roads(element)) {
+      const Part* part = part_of(named);
+      if (part == nullptr) return false;
+      rename(named.node, named.attribute, part->id, changed);
+      if (part->cut.is_whole()) continue;
+      for (const auto& station : named.stations) {
+        const double s_m = station_m(station, part->cut);
+        const double kept_m = std::clamp(s_m, part->cut.from_m, part->cut.to_m);
+        if (whole && kept_m != s_m) return false;
+        if (kept_m == s_m && (part->cut.has_start() || is_word(station))) continue;
+        set_number(station.first, station.second, kept_m - part->cut.from_m);
+        changed = true;
+      }
+    }
+    return true;
+  }
+
+  static bool is_word(const std::pair<pugi::xml_node, const char*>& station) {
+    const std::string written = text(station.first, station.second);
+    return written == "start" || written == "end";
+  }
+
+  const Part* part_of(const NamedRoad& named) const {
+    const std::string road = named.road();
+    const std::string contact = text(named.node, "contactPoint");
+    const Part* any = roads_.any(road);
+    if (any == nullptr) return nullptr;
+    if (named.stations.empty()) {
+      return contact.empty() ? any : roads_.with_end(road, contact == "start");
+    }
+    const double first_m = station_m(named.stations.front(), any->cut);
+    const double last_m = station_m(named.stations.back(), any->cut);
+    return roads_.with_stretch(road, std::min(first_m, last_m), std::max(first_m, last_m));
   }
 
   // Whether both ends that meet are there; then they are called as they are called now.
@@ -322,6 +448,9 @@ class Settler {
   void settle_road(const Part& part) {
     settle_road_links(part);
     settle_membership(part);
+    settle_positions(part);
+    settle_railroad(part);
+    settle_surface(part);
     settle_references_of(part, "signals", "signalReference", signals_);
     settle_references_of(part, "objects", "objectReference", objects_);
     forget_empty(part.node, true);
@@ -342,6 +471,64 @@ class Settler {
     }
     if (changed) clip_memory(road).append_copy(whole);
     road.remove_child(whole);
+  }
+
+  void settle_positions(const Part& part) const {
+    for (auto signal : part.node.child("signals").children("signal")) {
+      const pugi::xml_node position = signal.child("positionRoad");
+      if (!position) continue;
+      const pugi::xml_node whole = signal.insert_copy_after(position, position);
+      bool changed = false;
+      const bool is_there = settle_names(position, false, changed);
+      if (changed || !is_there) clip_memory(signal).append_copy(whole);
+      if (!is_there) signal.remove_child(position);
+      signal.remove_child(whole);
+    }
+  }
+
+  // Of a road that is there in parts each had the same list, of which `settle` leaves what is its.
+  template <typename Settle>
+  static void settle_list(const Part& part, const char* name, const Settle& settle) {
+    pugi::xml_node road = part.node;
+    const pugi::xml_node list = road.child(name);
+    if (!list) return;
+    const pugi::xml_node whole = road.insert_copy_after(list, list);
+    if (settle(list)) clip_memory(road).append_copy(whole);
+    road.remove_child(whole);
+  }
+
+  // A switch is on the part that has its place on the main track.
+  void settle_railroad(const Part& part) const {
+    settle_list(part, "railroad", [&](pugi::xml_node railroad) {
+      bool changed = false;
+      const Kept kept = keep(railroad, "switch", [&](pugi::xml_node one) {
+        const bool own = text(one.child("mainTrack"), "id") == part.cut.road;
+        return settle_names(one.child("mainTrack"), false, changed) &&
+               settle_names(one.child("sideTrack"), false, changed) &&
+               (!own || text(one.child("mainTrack"), "id") == part.id);
+      });
+      return changed || kept.gone > 0;
+    });
+  }
+
+  // The grid goes on from where it began: its start is now behind the road's.
+  void settle_surface(const Part& part) const {
+    if (part.cut.is_whole()) return;
+    settle_list(part, "surface", [&](pugi::xml_node surface) {
+      keep(surface, "CRG", [&](pugi::xml_node grid) {
+        const double from_m = number(grid, "sStart"), to_m = number(grid, "sEnd");
+        const double begin_m = std::max(from_m, part.cut.from_m);
+        const double end_m = std::min(to_m, part.cut.to_m);
+        if (begin_m >= end_m) return false;
+        if (begin_m > from_m && text(grid, "mode") != "global") {
+          set_number(grid, "sOffset", number(grid, "sOffset") - (begin_m - from_m));
+        }
+        set_number(grid, "sStart", begin_m - part.cut.from_m);
+        set_number(grid, "sEnd", end_m - part.cut.from_m);
+        return true;
+      });
+      return true;
+    });
   }
 
   // A road of a junction of which no connection is left stands alone.
@@ -378,8 +565,9 @@ class Settler {
 
 void restore_references(pugi::xml_node root) {
   for (const auto road : root.children("road")) restore_road(road);
-  restore_in_root(root, "controller");
-  restore_in_root(root, "junction");
+  for (const char* kind : {"controller", "junction", "junctionGroup", "station"}) {
+    restore_in_root(root, kind);
+  }
   forget_empty(root, false);
 }
 

@@ -6,7 +6,8 @@
 namespace roadbed::map::inline edit {
 
 // What elements of an OpenDRIVE file say of each other: links of roads, connections, priorities and
-// controllers of junctions, signals of controllers, references to signals and objects.
+// controllers of junctions, signals of controllers, references to signals and objects, and all that
+// names places of roads (named_roads.h).
 
 /// What `settle_references` took off, and keeps in clip memories.
 struct SettledReferences {

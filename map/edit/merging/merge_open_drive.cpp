@@ -46,11 +46,23 @@ Source read_source(MergeInput input) {
   return {std::move(xml), {document.crs, {offset.x_m, offset.y_m, offset.heading_rad}}, input.name};
 }
 
-constexpr std::array<const char*, 3> kKinds = {"road", "controller", "junction"};
+/// A kind of elements of the root that have ids. What names others stands behind those.
+struct IdKind {
+  const char* name;
+  NameChanges NewIds::*names;
+};
+constexpr std::array<IdKind, 5> kKinds = {{{"road", &NewIds::roads},
+                                           {"controller", &NewIds::controllers},
+                                           {"junction", &NewIds::junctions},
+                                           {"junctionGroup", &NewIds::groups},
+                                           {"station", &NewIds::stations}}};
+using OfKinds = std::array<bool, kKinds.size()>;
 
 /// Whether the elements of each kind stand in order of their numbers.
-std::array<bool, 3> kinds_in_order(pugi::xml_node root) {
-  return {is_in_order(root, kKinds[0]), is_in_order(root, kKinds[1]), is_in_order(root, kKinds[2])};
+OfKinds kinds_in_order(pugi::xml_node root) {
+  OfKinds in_order{};
+  for (std::size_t i = 0; i < kKinds.size(); ++i) in_order[i] = is_in_order(root, kKinds[i].name);
+  return in_order;
 }
 
 class Merger {
@@ -58,13 +70,11 @@ class Merger {
   Merger(pugi::xml_node root, const MergeOptions& options)
       : root_(root), options_(options), in_order_(kinds_in_order(root)) {
     for (const auto road : root.children("road")) note_road(road);
-    for (const auto one : root.children("controller")) {
-      note(controllers_, one);
-      last_controller_ = one;
-    }
-    for (const auto one : root.children("junction")) {
-      note(junctions_, one);
-      last_junction_ = one;
+    for (std::size_t i = 1; i < kKinds.size(); ++i) {
+      for (const auto one : root.children(kKinds[i].name)) {
+        by_id_[i].emplace(text(one, "id"), one);
+        last_[i] = one;
+      }
     }
     for (const auto one : root.children()) {
       if (is_other(one)) others_[one.name()].push_back(one);
@@ -72,13 +82,14 @@ class Merger {
   }
 
   void add(const Source& source, Merged& result) {
-    const std::array<bool, 3> in_order = kinds_in_order(source.root());
+    const OfKinds in_order = kinds_in_order(source.root());
     for (std::size_t i = 0; i < in_order.size(); ++i) in_order_[i] = in_order_[i] && in_order[i];
     const NewIds names = new_names(source, result);
     names.apply(source.root());
     for (const auto road : source.root().children("road")) add_road(road);
-    for (const auto one : source.root().children("controller")) add_once(controllers_, one);
-    for (const auto one : source.root().children("junction")) add_once(junctions_, one);
+    for (std::size_t i = 1; i < kKinds.size(); ++i) {
+      for (const auto one : source.root().children(kKinds[i].name)) add_once(i, one);
+    }
     add_others(source.root());
     widen_header(source.root().child("header"));
   }
@@ -86,7 +97,7 @@ class Merger {
   void finish(const std::string& file, Merged& result) {
     name_parts(file, result);
     for (std::size_t i = 0; i < kKinds.size(); ++i) {
-      if (in_order_[i]) put_in_order(root_, kKinds[i]);
+      if (in_order_[i]) put_in_order(root_, kKinds[i].name);
     }
     const SettledReferences settled = settle_references(root_);
     result.count("roads taken once that several maps hold", repeated_);
@@ -106,10 +117,8 @@ class Merger {
   // Whole roads that have a signal or an object of that id: files repeat ids from road to road.
   using UsersOfId = std::map<std::string, std::set<std::string>>;
 
-  static void note(ById& elements, pugi::xml_node one) { elements.emplace(text(one, "id"), one); }
-
   void note_road(pugi::xml_node road) {
-    last_road_ = road;
+    last_[0] = road;
     parts_[road_cut(road).road].push_back(road);
     origins_[text(road, "id")] = source_;
     for (const auto signal : road.child("signals").children("signal")) {
@@ -122,14 +131,12 @@ class Merger {
     }
   }
 
-  // Roads, junctions, controllers and signals of the same id that are not the same.
+  // Roads, signals and whatever else has the id of something that is not the same.
   NewIds new_names(const Source& source, Merged& result) {
     ++source_;
     NewIds names;
-    FreshIds roads, junctions, controllers;
+    FreshIds roads;
     for (const auto& [id, parts] : parts_) roads.take(id);
-    for (const auto& [id, one] : junctions_) junctions.take(id);
-    for (const auto& [id, one] : controllers_) controllers.take(id);
     const auto give = [&](const char* kind, NameChanges& to, FreshIds& ids, const std::string& id) {
       to[id] = ids.fresh();
       result.renamed.push_back({source.name, kind, id, to[id]});
@@ -153,9 +160,7 @@ class Merger {
       name_inside(road.child("objects"), "object", objects_, same.contains(id) ? id : "",
                   [&](const std::string& one) { give("object", names.objects, object_ids_, one); });
     }
-    // What names something renamed is another thing, too.
-    name_others(source, "junction", junctions_, names.junctions, junctions, result, names);
-    name_others(source, "controller", controllers_, names.controllers, controllers, result, names);
+    for (std::size_t i = 1; i < kKinds.size(); ++i) name_others(source, i, result, names);
     return names;
   }
 
@@ -168,26 +173,27 @@ class Merger {
     }
   }
 
-  static void name_others(const Source& source, const char* kind, const ById& own, NameChanges& to,
-                          FreshIds& ids, Merged& result, const NewIds& names) {
-    for (const auto one : source.root().children(kind)) ids.take(text(one, "id"));
-    for (const auto one : source.root().children(kind)) {
+  // What names something renamed is another thing, too.
+  void name_others(const Source& source, std::size_t kind, Merged& result, NewIds& names) const {
+    const auto all = source.root().children(kKinds[kind].name);
+    NameChanges& to = names.*kKinds[kind].names;
+    FreshIds ids;
+    for (const auto& [id, one] : by_id_[kind]) ids.take(id);
+    for (const auto one : all) ids.take(text(one, "id"));
+    for (const auto one : all) {
       const std::string id = text(one, "id");
-      const auto found = own.find(id);
-      if (found == own.end()) continue;
+      const auto found = by_id_[kind].find(id);
+      if (found == by_id_[kind].end()) continue;
       if (are_equal(found->second, one) && !leads_to_renamed(one, names)) continue;
       to[id] = ids.fresh();
-      result.renamed.push_back({source.name, kind, id, to[id]});
+      result.renamed.push_back({source.name, kKinds[kind].name, id, to[id]});
     }
   }
 
   static bool leads_to_renamed(pugi::xml_node one, const NewIds& names) {
-    const auto parts = one.children();
-    return std::any_of(parts.begin(), parts.end(), [&](pugi::xml_node part) {
-      return names.roads.contains(text(part, "incomingRoad")) ||
-             names.roads.contains(text(part, "connectingRoad")) ||
-             names.signals.contains(text(part, "signalId"));
-    });
+    pugi::xml_document renamed;
+    names.apply_to(renamed.append_copy(one));
+    return !are_equal(one, renamed.first_child());
   }
 
   // Whether a road is one that is there already, or a part of the same. Of very many with one id
@@ -223,9 +229,9 @@ class Merger {
       ++repeated_;
       return;
     }
-    last_road_ = root_.insert_copy_after(road, last_road_);
-    parts.push_back(last_road_);
-    note_ids(last_road_);
+    last_[0] = root_.insert_copy_after(road, last_[0]);
+    parts.push_back(last_[0]);
+    note_ids(last_[0]);
     join(parts);
   }
 
@@ -258,26 +264,25 @@ class Merger {
                         fmt::format("road {} from {:.3f} m", first.road, second.from_m),
                         (there - here).norm(), "joined", here.x(), here.y()});
       join_roads(parts[i], parts[i + 1]);
-      if (parts[i + 1] == last_road_) last_road_ = last_road_.previous_sibling();
+      if (parts[i + 1] == last_[0]) last_[0] = last_[0].previous_sibling();
       root_.remove_child(parts[i + 1]);
       parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(i) + 1);
       joined_.insert(first.road);
     }
   }
 
-  void add_once(ById& elements, pugi::xml_node one) {
-    if (elements.contains(text(one, "id"))) return;
-    const bool follows = &elements == &junctions_ && last_controller_;
-    pugi::xml_node& behind = &elements == &junctions_ ? last_junction_ : last_controller_;
-    if (!behind) behind = follows ? last_controller_ : last_road_;
-    behind = root_.insert_copy_after(one, behind);
-    note(elements, behind);
+  void add_once(std::size_t kind, pugi::xml_node one) {
+    if (by_id_[kind].contains(text(one, "id"))) return;
+    std::size_t behind = kind;  // or the nearest kind before it
+    while (behind > 0 && !last_[behind]) --behind;
+    last_[kind] = root_.insert_copy_after(one, last_[behind]);
+    by_id_[kind].emplace(text(one, "id"), last_[kind]);
   }
 
   static bool is_other(pugi::xml_node one) {
     const std::string_view name = one.name();
-    return one.type() == pugi::node_element && name != "header" && name != "road" &&
-           name != "junction" && name != "controller" && !is_clip_memory(one);
+    return one.type() == pugi::node_element && name != "header" && !is_clip_memory(one) &&
+           std::none_of(kKinds.begin(), kKinds.end(), [&](auto kind) { return name == kind.name; });
   }
 
   // Whatever else is in the root, once.
@@ -324,12 +329,12 @@ class Merger {
 
   pugi::xml_node root_;
   const MergeOptions& options_;
-  std::array<bool, 3> in_order_;
-  std::size_t source_ = 0;                                      // which of the files is being added
-  std::map<std::string, std::vector<pugi::xml_node>> parts_;    // of each whole road
-  std::map<std::string, std::size_t> origins_;                  // file of each road
-  pugi::xml_node last_road_, last_controller_, last_junction_;  // behind which new ones stand
-  ById junctions_, controllers_;
+  OfKinds in_order_;
+  std::size_t source_ = 0;                                     // which of the files is being added
+  std::map<std::string, std::vector<pugi::xml_node>> parts_;   // of each whole road
+  std::map<std::string, std::size_t> origins_;                 // file of each road
+  std::array<pugi::xml_node, kKinds.size()> last_;             // behind which new ones stand
+  std::array<ById, kKinds.size()> by_id_;                      // of all kinds but roads
   std::map<std::string, std::vector<pugi::xml_node>> others_;  // by name
   UsersOfId signals_, objects_;
   FreshIds signal_ids_, object_ids_;
