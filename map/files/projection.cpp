@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <map>
 #include <sstream>
@@ -109,6 +110,16 @@ std::string well_known_text(const std::string& crs) {
   Message message{};
   if (!describe(crs, wkt, message)) refuse_unknown(crs, message);
   return wkt.data();
+}
+
+void require_metres(const std::string& crs) {
+  const std::string text = well_known_text(crs);
+  const std::size_t unit = text.rfind("UNIT["), factor = text.find(',', unit);
+  if (text.starts_with("PROJCS[") && factor != std::string::npos &&
+      std::strtod(&text[factor + 1], nullptr) == 1.0) {
+    return;
+  }
+  refuse(crs, "not a projected system in metres", "name one, as EPSG:32632");
 }
 
 std::string projection_fault(const std::string& crs) {

@@ -21,6 +21,10 @@ void from_lon_lat(const std::string& crs, std::span<Eigen::Vector2d> points);
 /// The horizontal part of a system as well-known text (WKT 1). Throws as above.
 std::string well_known_text(const std::string& crs);
 
+/// Refuses systems whose coordinates are not metres in a plane: degrees, geocentric ones, feet.
+/// @throws InputError, and as above.
+void require_metres(const std::string& crs);
+
 /// Opens PROJ, where it is installed, as the first use of it does.
 void open_projection_module();
 

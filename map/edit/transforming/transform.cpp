@@ -7,6 +7,7 @@
 
 #include "roadbed/geometry/primitives/cross.h"
 #include "roadbed/map/edit/refuse_format.h"
+#include "roadbed/map/files/projection.h"
 #include "roadbed/map/load_map.h"
 
 namespace roadbed::map::inline edit::inline transforming {
@@ -43,6 +44,7 @@ Alignment align(std::span<const PointPair> pairs) {
 }
 
 Edited transform(std::string bytes, const std::string& name, const TransformOptions& options) {
+  if (options.to) require_metres(*options.to);
   MapBytes map = map_bytes(std::move(bytes), name);
   if (map.format.name == "OpenDRIVE") {
     return transform_open_drive(std::move(map.bytes), name, options);

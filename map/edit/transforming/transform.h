@@ -45,14 +45,15 @@ struct TransformOptions {
 /// A map at another place, or in another coordinate system, as a file of its own format; what of it
 /// roadbed does not use stays. Ids and links stay.
 /// @throws InputError if the file is unusable, of a format that cannot be moved, or its system is
-///         unknown and `to` asks for another.
+///         unknown and `to` asks for another, or one of them is not of metres in a plane.
 Edited transform(std::string bytes, const std::string& name, const TransformOptions& options);
 
 // Of one format.
 //
-// OpenDRIVE: each geometry is put to its place and direction. Where the new system is another
-// scale, each road takes the scale of its middle: stations, lengths, widths and curvatures with it;
-// what that leaves between two geometries of a road is said. Heights stay, but for the shift.
+// OpenDRIVE: each geometry is put to its place, in another system turned and scaled so that it ends
+// where the next one begins: stations, lengths and curvatures with it, widths by one scale for each
+// road. How far that is off where the system puts its middle is said. Heights stay, but for the
+// shift.
 Edited transform_open_drive(std::string bytes, const std::string& name,
                             const TransformOptions& options);
 

@@ -120,6 +120,7 @@ class ScenarioMover {
     at.push_back(middle);
     at.push_back(middle + Vector2d(kProbeM, 0.0));
     const std::string crs = known_system();
+    require_metres(crs);
     to_lon_lat(crs, at);
     from_lon_lat(*options_.to, at);
     const Vector2d along = at.back() - at[at.size() - 2];

@@ -3,12 +3,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <initializer_list>
+#include <map>
 #include <numbers>
+#include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "roadbed/geometry/primitives/cross.h"
+#include "roadbed/map/edit/named_roads.h"
 #include "roadbed/map/edit/plan_cut.h"
 #include "roadbed/map/edit/transforming/transform.h"
 #include "roadbed/map/edit/xml_edit.h"
@@ -21,6 +28,8 @@ namespace {
 
 using Eigen::Vector2d;
 
+constexpr double kSaidM = 0.01;  // what is less far off is not said
+
 /// From the file's coordinates to the new ones.
 class PointMapping {
  public:
@@ -29,6 +38,7 @@ class PointMapping {
       : options_(options),
         offset_(document.offset_in_crs),
         crs_(options.crs.value_or(document.crs)) {
+    if (options.to && !crs_.empty()) require_metres(crs_);
     if (!options.to || !crs_.empty()) return;
     throw InputError({.file = name,
                       .found = "no coordinate system",
@@ -87,28 +97,96 @@ void scale_curve(pugi::xml_node geometry, double by) {
   }
 }
 
-// Everything of a road that is measured along it or across it.
-void scale_road(pugi::xml_node road, double by) {
-  std::vector<pugi::xml_node> open{road};
+// Stations of a road in the new system: each of its geometries has a scale of its own.
+class StationMapping {
+ public:
+  void add(double from_m, double scale) {
+    const double here_m = stretches_.empty() ? scale * from_m : (*this)(from_m);
+    stretches_.push_back({from_m, here_m, scale});
+  }
+
+  double operator()(double s_m) const {
+    const Stretch& stretch = at(s_m);
+    return stretch.there_m + stretch.scale * (s_m - stretch.from_m);
+  }
+
+  double scale_at(double s_m) const { return at(s_m).scale; }
+
+ private:
+  struct Stretch {
+    double from_m, there_m, scale;
+  };
+
+  const Stretch& at(double s_m) const {
+    static constexpr Stretch same{0.0, 0.0, 1.0};
+    if (stretches_.empty()) return same;
+    const auto after =
+        std::upper_bound(stretches_.begin(), stretches_.end(), s_m,
+                         [](double s, const Stretch& one) { return s < one.from_m; });
+    return after == stretches_.begin() ? *after : *std::prev(after);
+  }
+
+  std::vector<Stretch> stretches_;
+};
+
+bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// What one element of a road says along it or across it, but for stations of roads that it names.
+// Returns the station where what it says begins.
+// @param base_m  where that of the element around it does.
+// @param across  the scale across the road, one for all of it: widths that meet go on meeting.
+double scale_element(pugi::xml_node node, double base_m, const StationMapping& mapping,
+                     double across) {
+  const std::string_view name = node.name();
+  double here_m = base_m;
+  if (node.attribute("s") && named_roads(node).empty()) {
+    here_m = number(node, "s");
+    set_number(node, "s", mapping(here_m));
+  }
+  for (const char* offset : {"sOffset", "ds"}) {
+    if (!node.attribute(offset)) continue;
+    here_m = base_m + number(node, offset);
+    set_number(node, offset, mapping(here_m) - mapping(base_m));
+  }
+  const double along = mapping.scale_at(here_m);
+  if (is_one_of(name, {"road", "repeat", "bridge", "tunnel"})) {
+    set_number(node, "length", mapping(here_m + number(node, "length")) - mapping(here_m));
+  }
+  if (name == "CRG") {
+    for (const char* s : {"sStart", "sEnd"}) set_number(node, s, mapping(number(node, s)));
+  }
+  scale_attributes(node, {"t", "tStart", "tEnd", "tOffset"}, across);
+  if (is_one_of(name, {"width", "border", "laneOffset", "sway"})) scale_cubic(node, along, across);
+  if (is_one_of(name, {"elevation", "superelevation", "crossfall"})) scale_cubic(node, along, 1.0);
+  if (name == "shape") scale_cubic(node, across, 1.0);
+  return here_m;
+}
+
+void scale_road(pugi::xml_node road, const StationMapping& mapping) {
+  const double length_m = number(road, "length");
+  const double across = length_m > 0.0 ? mapping(length_m) / length_m : 1.0;
+  std::vector<std::pair<pugi::xml_node, double>> open{{road, 0.0}};
   while (!open.empty()) {
-    const pugi::xml_node node = open.back();
+    const auto [node, base_m] = open.back();
     open.pop_back();
-    const std::string_view name = node.name();
-    if (name == "userData" || name == "outline" || name == "outlines") continue;
-    scale_attributes(node, {"s", "sOffset", "t", "tStart", "tEnd", "elementS"}, by);
-    if (name == "road" || name == "geometry" || name == "repeat" || name == "bridge" ||
-        name == "tunnel") {
-      scale_attributes(node, {"length"}, by);
-    }
-    if (name == "geometry") scale_curve(node, by);
-    if (name == "width" || name == "border" || name == "laneOffset") scale_cubic(node, by, by);
-    if (name == "elevation" || name == "superelevation" || name == "crossfall") {
-      scale_cubic(node, by, 1.0);
-    }
+    const double here_m = scale_element(node, base_m, mapping, across);
     for (const auto child : node.children()) {
-      if (name != "geometry" && child.type() == pugi::node_element) open.push_back(child);
+      const bool is_other = is_one_of(child.name(), {"userData", "planView"});
+      if (!is_other && child.type() == pugi::node_element) open.emplace_back(child, here_m);
     }
   }
+}
+
+// Numbers in a row, as the heights of a grid.
+void raise_list(pugi::xml_attribute list, double up_m) {
+  std::istringstream numbers(list.value());
+  std::string raised;
+  for (double z_m = 0.0; numbers >> z_m;) {
+    raised += fmt::format("{}{}", raised.empty() ? "" : " ", z_m + up_m);
+  }
+  if (list) list.set_value(raised.c_str());
 }
 
 class Mover {
@@ -119,27 +197,32 @@ class Mover {
   void run() {
     collect();
     mapping_.apply(points_);
-    std::size_t next = 0;
-    for (const auto road : root_.children("road")) {
-      if (!mapping_.is_rigid()) scale_whole(road, next);
-      for (const auto geometry : road.child("planView").children("geometry"))
-        place(geometry, next++);
-      lift(road);
-    }
+    for (Piece& piece : pieces_) place(piece);
+    if (!mapping_.is_rigid()) scale_all();
+    for (const auto road : root_.children("road")) lift(road);
+    for (const auto junction : root_.children("junction")) lift_grid(junction);
     move_inertial();
     move_header();
   }
 
-  // The largest step between geometries of one road that was not there before.
+  // The largest step between geometries of one road.
   double worst_step_m() const {
     double worst_m = 0.0;
     for (const auto road : root_.children("road")) {
       const auto list = children(road.child("planView"), "geometry");
       for (std::size_t i = 0; i + 1 < list.size(); ++i) {
-        const auto piece = plan_piece(list[i]);
-        const auto end = geometry::plan_point(piece, piece.s_m + piece.length_m).pose.position();
+        const Vector2d end = place_in(list[i], 1.0);
         worst_m = std::max(worst_m, (end - plan_piece(list[i + 1]).start.position()).norm());
       }
+    }
+    return worst_m;
+  }
+
+  // How far the middle of a geometry is at most from where it has to be.
+  double worst_middle_m() const {
+    double worst_m = 0.0;
+    for (const Piece& piece : pieces_) {
+      worst_m = std::max(worst_m, (place_in(piece.node, 0.5) - points_[piece.first + 2]).norm());
     }
     return worst_m;
   }
@@ -147,34 +230,90 @@ class Mover {
  private:
   static constexpr double kProbeM = 10.0;  // a second point tells direction and scale
 
+  // A geometry; its points are its start, its end, its middle, and one ahead of its start.
+  struct Piece {
+    pugi::xml_node node;
+    std::size_t first;
+    Vector2d chord;
+    double scale = 1.0;
+  };
+
+  static Vector2d place_in(pugi::xml_node geometry, double fraction) {
+    const auto piece = plan_piece(geometry);
+    return geometry::plan_point(piece, piece.s_m + fraction * piece.length_m).pose.position();
+  }
+
   void collect() {
-    for (const auto road : root_.children("road")) {
-      for (const auto geometry : road.child("planView").children("geometry")) {
+    for (const auto owner : root_.children()) {
+      for (const auto geometry : owner.child("planView").children("geometry")) {
+        const Vector2d start(number(geometry, "x"), number(geometry, "y"));
+        const Vector2d end = place_in(geometry, 1.0);
         const double heading = number(geometry, "hdg");
-        points_.emplace_back(number(geometry, "x"), number(geometry, "y"));
-        points_.emplace_back(points_.back() +
-                             kProbeM * Vector2d(std::cos(heading), std::sin(heading)));
+        pieces_.push_back({geometry, points_.size(), end - start});
+        points_.insert(points_.end(),
+                       {start, end, place_in(geometry, 0.5),
+                        start + kProbeM * Vector2d(std::cos(heading), std::sin(heading))});
       }
     }
   }
 
-  double scale_at(std::size_t i) const {
-    return (points_[2 * i + 1] - points_[2 * i]).norm() / kProbeM;
+  // A motion turns all alike. In another system a geometry is turned and scaled so that it ends
+  // where it has to, or begins in its direction where it is a loop.
+  void place(Piece& piece) const {
+    const Vector2d& start = points_[piece.first];
+    const double heading = number(piece.node, "hdg");
+    const bool is_loop = piece.chord.norm() < 0.1 * number(piece.node, "length");
+    const Vector2d before =
+        is_loop ? Vector2d(kProbeM * Vector2d(std::cos(heading), std::sin(heading))) : piece.chord;
+    const Vector2d after = points_[piece.first + (is_loop ? 3 : 1)] - start;
+    set_number(piece.node, "x", start.x());
+    set_number(piece.node, "y", start.y());
+    double turn_rad = options_.motion.turn_rad;
+    if (!mapping_.is_rigid() && before.norm() > 0.0) {
+      piece.scale = after.norm() / before.norm();
+      turn_rad = std::atan2(geometry::cross(before, after), before.dot(after));
+    }
+    set_number(piece.node, "hdg", heading + turn_rad);
   }
 
-  // By the scale of the geometry in its middle.
-  void scale_whole(pugi::xml_node road, std::size_t first) const {
-    const std::size_t count = children(road.child("planView"), "geometry").size();
-    if (count > 0) scale_road(road, scale_at(first + count / 2));
+  void scale_all() const {
+    std::map<pugi::xml_node, StationMapping> mappings;  // of each that has a plan view
+    for (const Piece& piece : pieces_) {
+      mappings[piece.node.parent().parent()].add(number(piece.node, "s"), piece.scale);
+    }
+    for (const Piece& piece : pieces_) {
+      const StationMapping& mapping = mappings.at(piece.node.parent().parent());
+      scale_attributes(piece.node, {"length"}, piece.scale);
+      set_number(piece.node, "s", mapping(number(piece.node, "s")));
+      scale_curve(piece.node, piece.scale);
+    }
+    std::map<std::string, const StationMapping*> by_id;
+    for (const auto& [owner, mapping] : mappings) {
+      if (std::string_view(owner.name()) == "road") {
+        scale_road(owner, mapping);
+        by_id.emplace(text(owner, "id"), &mapping);
+      } else if (pugi::xml_node grid = owner.child("elevationGrid")) {
+        scale_attributes(grid, {"gridSpacing"}, mapping.scale_at(number(grid, "sStart")));
+        scale_attributes(grid, {"sStart"}, mapping.scale_at(0.0));
+      }
+    }
+    for_each_named_road(root_, [&](const NamedRoad& named) {
+      const auto found = by_id.find(named.road());
+      if (found == by_id.end()) return;
+      for (auto [node, station] : named.stations) {
+        const auto written = node.attribute(station);
+        const bool is_word = std::isalpha(static_cast<unsigned char>(*written.value())) != 0;
+        if (!is_word) set_number(node, station, (*found->second)(written.as_double()));
+      }
+    });
   }
 
-  void place(pugi::xml_node geometry, std::size_t i) const {
-    const Vector2d along = points_[2 * i + 1] - points_[2 * i];
-    set_number(geometry, "x", points_[2 * i].x());
-    set_number(geometry, "y", points_[2 * i].y());
-    set_number(geometry, "hdg",
-               mapping_.is_rigid() ? number(geometry, "hdg") + options_.motion.turn_rad
-                                   : std::atan2(along.y(), along.x()));
+  void lift_grid(pugi::xml_node junction) const {
+    const double up_m = options_.motion.shift_m.z();
+    if (up_m == 0.0) return;
+    for (const auto row : junction.child("elevationGrid").children("elevation")) {
+      for (const char* side : {"center", "left", "right"}) raise_list(row.attribute(side), up_m);
+    }
   }
 
   void lift(pugi::xml_node road) const {
@@ -239,7 +378,8 @@ class Mover {
   pugi::xml_node root_;
   const PointMapping& mapping_;
   const TransformOptions& options_;
-  std::vector<Vector2d> points_;  // of each geometry: its start, and one ahead
+  std::vector<Piece> pieces_;
+  std::vector<Vector2d> points_;  // of the pieces
 };
 
 }  // namespace
@@ -260,6 +400,13 @@ Edited transform_open_drive(std::string bytes, const std::string& name,
   if (after_m > before_m + 1e-6) {
     result.notes.push_back(fmt::format(
         "geometries of a road are up to {:.6f} m apart, {:.6f} m before", after_m, before_m));
+  }
+  const double off_m = mover.worst_middle_m();
+  if (off_m > kSaidM) {
+    result.notes.push_back(
+        fmt::format("a line, arc or spiral is none in the new system: reference lines are up to "
+                    "{:.3f} m off where they would be",
+                    off_m));
   }
   result.bytes = text_of(xml, indent);
   return result;

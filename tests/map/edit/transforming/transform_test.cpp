@@ -9,9 +9,12 @@
 #include <string>
 
 #include "roadbed/map/derived/map_diff.h"
+#include "roadbed/map/edit/plan_cut.h"
+#include "roadbed/map/edit/xml_edit.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/projection.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/xml.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/made_open_drive.h"
 #include "roadbed/tests/support/real_data.h"
@@ -130,6 +133,79 @@ TEST(Transform, BringsBordersWhereProjDoes) {
     for (const Vector2d& point : points) {
       const auto place = after.lane(lane.id).left.in_map.project(after.to_map(point));
       EXPECT_NEAR(place.d_m, 0.0, 0.0015) << lane.name;
+    }
+  }
+}
+
+std::vector<pugi::xml_node> geometries(const XmlDocument& xml) {
+  std::vector<pugi::xml_node> all;
+  for (const auto road : xml.root().children("road")) {
+    for (const auto geometry : road.child("planView").children("geometry")) all.push_back(geometry);
+  }
+  return all;
+}
+
+std::vector<Vector2d> ends(pugi::xml_node geometry) {
+  const auto piece = plan_piece(geometry);
+  return {piece.start.position(),
+          geometry::plan_point(piece, piece.s_m + piece.length_m).pose.position()};
+}
+
+// Scales change along a road, most in systems that are not of equal angles.
+TEST(Transform, BringsBothEndsOfEachGeometryWhereProjDoes) {
+  const std::string from = "+proj=tmerc +lat_0=48 +lon_0=9 +k=1 +datum=WGS84 +units=m";
+  for (const char* to : {"EPSG:3857", "EPSG:3035", "EPSG:32632"}) {
+    const XmlDocument before(tests::curved_road_xml(), "a.xodr"),
+        after(transform(tests::curved_road_xml(), "a.xodr", {.motion = {}, .to = to, .crs = from})
+                  .bytes,
+              "b.xodr");
+    const auto old = geometries(before), now = geometries(after);
+    ASSERT_EQ(old.size(), now.size());
+    double s_m = 0.0;
+    for (std::size_t i = 0; i < old.size(); ++i) {
+      std::vector<Vector2d> there = ends(old[i]);
+      to_lon_lat(from, there);
+      from_lon_lat(to, there);
+      EXPECT_NEAR((there[0] - ends(now[i])[0]).norm(), 0.0, 1e-6) << to << ' ' << i;
+      EXPECT_NEAR((there[1] - ends(now[i])[1]).norm(), 0.0, 1e-6) << to << ' ' << i;
+      EXPECT_NEAR(number(now[i], "s"), s_m, 1e-6) << to << ' ' << i;
+      s_m += number(now[i], "length");
+    }
+    EXPECT_NEAR(number(after.root().child("road"), "length"), s_m, 1e-6);
+  }
+}
+
+double worst_step_m(const std::string& bytes) {
+  const XmlDocument xml(bytes, "a.xodr");
+  double worst_m = 0.0;
+  for (const auto geometry : geometries(xml)) {
+    if (const auto next = geometry.next_sibling("geometry")) {
+      worst_m = std::max(worst_m, (ends(geometry)[1] - ends(next)[0]).norm());
+    }
+  }
+  return worst_m;
+}
+
+TEST(Transform, LeavesNoStepBetweenTheGeometriesOfRealRoads) {
+  ROADBED_REAL_DATA_OR_SKIP(real);
+  for (const auto& [name, to] : {std::pair{"maliput+maliput_malidrive/cloverleaf", "EPSG:3310"},
+                                 {"BerkeleyLearnVerify+Scenic/Town04", "EPSG:3857"}}) {
+    const std::string bytes = read_file(real / "opendrive" / (std::string(name) + ".xodr"));
+    const double before_m = worst_step_m(bytes);
+    const Edited moved = transform(bytes, name, {.motion = {}, .to = to, .crs = {}});
+    EXPECT_LT(worst_step_m(moved.bytes), 1.01 * before_m + 1e-6) << name << ", scaled by 1.0067";
+  }
+}
+
+TEST(Transform, NeedsSystemsOfMetresInAPlane) {
+  const std::string utm = "EPSG:32632";
+  for (const std::string other :
+       {"EPSG:4326", "EPSG:4978", "EPSG:2227", "+proj=longlat +datum=WGS84"}) {
+    for (const auto& [to, crs] : {std::pair{other, utm}, {utm, other}}) {
+      EXPECT_THROW(
+          transform(tests::curved_road_xml(), "a.xodr", {.motion = {}, .to = to, .crs = crs}),
+          InputError)
+          << crs << " to " << to;
     }
   }
 }
