@@ -296,6 +296,22 @@ class OpenDriveProposer {
     }
   }
 
+  /// The second road as a whole, or else the first one, to where its end meets the other's: one
+  /// that is free at its other end, too. Returns how far; the ends may stay apart where none is.
+  double close_ends(const FreeEnd& a, const FreeEnd& b, std::vector<TextEdit>& edits) const {
+    const Vector2d gap = exit_at(*a.road, a.end)->at - exit_at(*b.road, b.end)->at;
+    if (gap.norm() <= options_.validate.max_gap_m) return 0.0;
+    for (const auto& [free, by] : {std::pair(b, gap), std::pair(a, Vector2d(-gap))}) {
+      if (link_of(*free.road, other(free.end))) continue;
+      for (const CurveSource& curve : free.road->geometry) {
+        edits.push_back(with_number(curve.node(), "x", xml_.number(curve.node(), "x") + by.x()));
+        edits.push_back(with_number(curve.node(), "y", xml_.number(curve.node(), "y") + by.y()));
+      }
+      return gap.norm();
+    }
+    return 0.0;
+  }
+
   void link(const FreeEnd& a, const FreeEnd& b) {
     std::vector<TextEdit> edits{with_road_link(*a.road, a.end, *b.road, b.end),
                                 with_road_link(*b.road, b.end, *a.road, a.end)};
@@ -309,11 +325,12 @@ class OpenDriveProposer {
       edits.push_back(with_lane_link(lane, a.end, id));
       edits.push_back(with_lane_link(*next, b.end, lane.id));
     }
+    const double moved_m = close_ends(a, b, edits);
     add("link.dead-end", a.road->element(), a.road->record.node,
         fmt::format("its {} is now road {}, whose {} is there; lanes of the same number and type "
                     "are linked",
                     link_name(a.end), b.road->record.id, end_name(b.end)),
-        std::move(edits));
+        std::move(edits), moved_m);
   }
 
   const std::string& bytes_;

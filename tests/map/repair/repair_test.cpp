@@ -1,5 +1,6 @@
 #include "roadbed/map/repair/repair.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -299,6 +300,40 @@ TEST(RepairMap, LinksEndsThatCoincideAndClosesGapsWithinTheToleranceOnly) {
   ASSERT_EQ(linked.repairs.size(), 1u);
   EXPECT_EQ(linked.repairs[0].rule, "geometry.gap");
   EXPECT_NEAR(linked.repairs[0].moved_m, 0.05, 1e-9);
+}
+
+// Roads of 50 m along the x axis with gaps between them.
+TEST(RepairMap, LinksRoadsWhoseEndsAreWithinTheTolerance) {
+  const auto roads = [](std::initializer_list<double> starts) {
+    std::string bytes = "<OpenDRIVE><header revMajor=\"1\" revMinor=\"7\"/>";
+    for (const double x : starts) {
+      bytes += fmt::format(
+          R"(<road id="{0}" length="50" junction="-1"><planView><geometry s="0" x="{0}" y="0" )"
+          R"(hdg="0" length="50"><line/></geometry></planView><lanes><laneSection s="0"><center>)"
+          R"(<lane id="0" type="none"/></center><right><lane id="-1" type="driving"><width )"
+          R"(sOffset="0" a="3.5" b="0" c="0" d="0"/></lane></right></laneSection></lanes></road>)",
+          x);
+    }
+    return bytes + "</OpenDRIVE>";
+  };
+  for (const double tolerance_m : {0.05, 0.1, 0.5}) {
+    const RepairOptions options{.tolerance_m = tolerance_m, .validate = {}};
+    for (const double factor : {0.45, 1.1}) {
+      const double gap_m = factor * tolerance_m;
+      const std::string bytes = roads({0.0, 50.0 + gap_m, 100.0 + 2.0 * gap_m});
+      if (factor > 1.0) {
+        EXPECT_TRUE(repair_file(bytes, "a map", options).repairs.empty()) << gap_m;
+        continue;
+      }
+      const RepairedFile file = expect_better(bytes, options);
+      const RoadMap road_map = parse_map(file.bytes, "a map");
+      std::size_t links = 0;
+      for (const Lane& lane : road_map.lanes()) {
+        links += road_map.graph().of(lane.id).successors.size();
+      }
+      EXPECT_EQ(links, 2u) << gap_m;
+    }
+  }
 }
 
 TEST(RepairMap, LeavesAFaultlessMapAsItIs) {
