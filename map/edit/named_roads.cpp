@@ -1,5 +1,6 @@
 #include "roadbed/map/edit/named_roads.h"
 
+#include <array>
 #include <string_view>
 
 namespace roadbed::map::inline edit {
