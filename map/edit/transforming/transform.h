@@ -51,8 +51,8 @@ Edited transform(std::string bytes, const std::string& name, const TransformOpti
 // Of one format.
 //
 // OpenDRIVE: each geometry is put to its place, in another system turned and scaled so that it ends
-// where the next one begins: stations, lengths and curvatures with it, widths by one scale for each
-// road. How far that is off where the system puts its middle is said. Heights stay, but for the
+// where the next one begins: stations, lengths and curvatures with it, widths by one scale for the
+// map. How far that is off where the system puts its middle is said. Heights stay, but for the
 // shift.
 Edited transform_open_drive(std::string bytes, const std::string& name,
                             const TransformOptions& options);

@@ -136,7 +136,7 @@ bool is_one_of(std::string_view name, std::initializer_list<std::string_view> na
 // What one element of a road says along it or across it, but for stations of roads that it names.
 // Returns the station where what it says begins.
 // @param base_m  where that of the element around it does.
-// @param across  the scale across the road, one for all of it: widths that meet go on meeting.
+// @param across  the scale across roads, one for the map: widths that meet go on meeting.
 double scale_element(pugi::xml_node node, double base_m, const StationMapping& mapping,
                      double across) {
   const std::string_view name = node.name();
@@ -164,9 +164,7 @@ double scale_element(pugi::xml_node node, double base_m, const StationMapping& m
   return here_m;
 }
 
-void scale_road(pugi::xml_node road, const StationMapping& mapping) {
-  const double length_m = number(road, "length");
-  const double across = length_m > 0.0 ? mapping(length_m) / length_m : 1.0;
+void scale_road(pugi::xml_node road, const StationMapping& mapping, double across) {
   std::vector<std::pair<pugi::xml_node, double>> open{{road, 0.0}};
   while (!open.empty()) {
     const auto [node, base_m] = open.back();
@@ -278,9 +276,13 @@ class Mover {
 
   void scale_all() const {
     std::map<pugi::xml_node, StationMapping> mappings;  // of each that has a plan view
+    double before_m = 0.0, after_m = 0.0;
     for (const Piece& piece : pieces_) {
+      before_m += number(piece.node, "length");
+      after_m += piece.scale * number(piece.node, "length");
       mappings[piece.node.parent().parent()].add(number(piece.node, "s"), piece.scale);
     }
+    const double across = before_m > 0.0 ? after_m / before_m : 1.0;
     for (const Piece& piece : pieces_) {
       const StationMapping& mapping = mappings.at(piece.node.parent().parent());
       scale_attributes(piece.node, {"length"}, piece.scale);
@@ -290,7 +292,7 @@ class Mover {
     std::map<std::string, const StationMapping*> by_id;
     for (const auto& [owner, mapping] : mappings) {
       if (std::string_view(owner.name()) == "road") {
-        scale_road(owner, mapping);
+        scale_road(owner, mapping, across);
         by_id.emplace(text(owner, "id"), &mapping);
       } else if (pugi::xml_node grid = owner.child("elevationGrid")) {
         scale_attributes(grid, {"gridSpacing"}, mapping.scale_at(number(grid, "sStart")));
