@@ -113,6 +113,12 @@ double side_to_pass_on(const map::RoadMap& road_map) {
   return map::drives_on_the_left(road_map) ? -1.0 : 1.0;
 }
 
+std::string why_on_neither_side(const std::string& id, double side) {
+  const bool is_left = side > 0.0;
+  return fmt::format("{} is not passed: there is no lane to its {}, and nobody is passed on the {}",
+                     id, is_left ? "left" : "right", is_left ? "right" : "left");
+}
+
 }  // namespace
 
 std::vector<PassingLane> passing_lanes(const map::RoadMap& road_map, const Route& route,
@@ -326,11 +332,14 @@ LanePassing::Decision LanePassing::look(const ViewOnLine& view) {
       decision.keep_within_on_wrong_side_m = keeps_out_of_m(*on_wrong_side, vehicle_);
     }
   }
-  if (lane == nullptr) return decision;
   if (!passed_) {
     if (lead == nullptr || gained_s(scene, *lead) < kLeastGain_s) return decision;
     if (gap_m(scene, *lead) > soon_m(scene, *lead)) return decision;
     const std::string& id = task_.obstacles[lead->obstacle].id;
+    if (lane == nullptr) {
+      if (!lead->stands) decision.reason = why_on_neither_side(id, side_);
+      return decision;
+    }
     if (const auto why = why_not(scene, *lead)) {
       decision.reason = fmt::format("{} is not passed: {}", id, *why);
       return decision;

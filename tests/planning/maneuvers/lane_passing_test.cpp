@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kStart_m = 20.0, kGoal_m = 500.0, kGap_m = 35.0, kLead_m = 4.5;
 
-enum class NextLane { free, none, taken, free_after_5_s };
+enum class NextLane { free, none, taken, free_after_5_s, free_on_the_right };
 
 struct Scene {
   double lead_mps, desired_mps;
@@ -79,7 +79,9 @@ struct Driven {
 };
 
 Driven drive_in(const Scene& scene) {
-  const char* own = scene.next_lane == NextLane::none ? "-1" : "-2";
+  const bool is_leftmost =
+      scene.next_lane == NextLane::none || scene.next_lane == NextLane::free_on_the_right;
+  const char* own = is_leftmost ? "-1" : "-2";
   Scenario scenario;
   scenario.file = "passing.json";
   scenario.map_file = map_of(scene);
@@ -156,8 +158,8 @@ std::string words(const Scene& scene) {
 TEST(LanePassing, PassesWhereFiveSecondsAreGainedAndFollowsElsewhere) {
   const bool is_short = std::getenv("ROADBED_ROUTES") != nullptr;  // ten times slower, sanitized
   int passes = 0, follows = 0;
-  for (const NextLane next_lane :
-       {NextLane::free, NextLane::none, NextLane::taken, NextLane::free_after_5_s}) {
+  for (const NextLane next_lane : {NextLane::free, NextLane::none, NextLane::taken,
+                                   NextLane::free_after_5_s, NextLane::free_on_the_right}) {
     for (const double lead_mps : {0.0, 1.0, 4.0, 8.0, 10.0, 16.0}) {
       for (const double desired_mps : {8.0, 12.0, 25.0}) {
         for (const bool in_bend : {false, true}) {
@@ -170,8 +172,9 @@ TEST(LanePassing, PassesWhereFiveSecondsAreGainedAndFollowsElsewhere) {
           const bool is_open = next_lane == NextLane::free ||
                                (next_lane == NextLane::free_after_5_s && lead_mps > 0.0);
           const bool must = is_open && saved_s(scene) >= 5.0 && has_room(scene);
-          const bool may_not =
-              next_lane == NextLane::none || next_lane == NextLane::taken || saved_s(scene) < 3.0;
+          const bool is_closed = next_lane == NextLane::none || next_lane == NextLane::taken ||
+                                 (next_lane == NextLane::free_on_the_right && lead_mps > 0.0);
+          const bool may_not = is_closed || saved_s(scene) < 3.0;
           if (next_lane == NextLane::free_after_5_s && must) {
             EXPECT_EQ(driven.drive.verdict.outcome, Outcome::goal_reached);
           } else if (must) {
@@ -199,6 +202,10 @@ TEST(LanePassing, SaysWhoIsInTheWay) {
             std::string::npos);
   EXPECT_NE(reasons({4.0, 12.0, NextLane::free, false, false})
                 .find("lead is not passed: the marking may not be crossed here"),
+            std::string::npos);
+  EXPECT_NE(reasons({4.0, 12.0, NextLane::free_on_the_right})
+                .find("lead is not passed: there is no lane to its left, and nobody is passed on "
+                      "the right"),
             std::string::npos);
 }
 
