@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <iterator>
 #include <set>
@@ -320,7 +321,7 @@ class LossCounter {
   }
 
  private:
-  void lose(const char* what, std::ptrdiff_t count) {
+  void lose(const char* what, std::integral auto count) {
     if (count > 0) lost_.emplace_back(what, static_cast<std::size_t>(count));
   }
 

@@ -6,7 +6,7 @@ Usage: check_open_drive.py ROADBED MAP...
 An OpenDRIVE map is compiled first, as it would come back as it stands otherwise. Every 2 cm the
 borders of the written lanes (ASAM OpenDRIVE 1.8: 9.3 geometry, 10.5 elevation, 10.6 superelevation,
 11.3 lane offset, 11.6 width) must be within 1 cm of a border of the map, as `roadbed export` lists
-them, and the map's vertices within 1 cm of a written border, or as near as the export said, and
+them, and the map's borders within 1 cm of a written one, or as near as the export said, and
 those of lanes on foot aside, of which crosswalks become objects; pieces of a reference line must join,
 in place and in heading, and lanes that are linked must have borders that meet. Prints a row per map;
 exit status 1 if something is farther off.
@@ -159,6 +159,13 @@ def listed_borders(path, but=frozenset()):
     return lines
 
 
+def every_step(line):
+    """A line with places between its points."""
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    stations = np.union1d(s, np.arange(0.0, s[-1], STEP_M))
+    return np.stack([np.interp(stations, s, line[:, i]) for i in (0, 1)], 1)
+
+
 def bounds(points, lines):
     """Of each point the distance to the segments at the nearest vertex: no less than to all."""
     vertices = np.concatenate(lines)
@@ -252,7 +259,7 @@ def check(program, path, scratch):
     crosswalks = {node.get("id") for node in root.iter("object")
                   if node.get("type") == "crosswalk"}
     held = listed_borders(listed, but=left_out | crosswalks).values()
-    back, back_at = farthest([np.array(line) for line in held], lines)
+    back, back_at = farthest([every_step(np.array(line)) for line in held], lines)
     gap = max(road.joints()[0] for road in roads.values())
     corner = max(road.joints()[1] for road in roads.values())
     step = link_gaps(roads, root, borders)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "roadbed/geometry/index/box_tree.h"
@@ -49,23 +50,58 @@ class NearestLine {
   geometry::BoxTree tree_;
 };
 
-/// The largest distance of a line's points to the nearest of all others. The one that it stands for
-/// runs beside it, mostly near enough to make any other needless.
+constexpr double kStride_m = 0.5, kWorthALook_m = 0.01, kLookedAt_m = 0.002;
+
+/// The largest distance of a line to the nearest of all others: of places every half a metre, and
+/// where these are off by more than a centimetre between them, too, as the farthest place may be
+/// between two of the others. The one that it stands for runs beside it, mostly near enough to make
+/// any other needless.
 class LineError {
  public:
   explicit LineError(const NearestLine& others) : others_(others) {}
 
   void add(const LineSpan& line, const LineSpan& beside) {
     std::size_t at = 1;
+    std::optional<Place> last;
+    const auto look = [&](const Eigen::Vector2d& point) {
+      Place place{point, distance_beside_m(point, beside, at)};
+      if (place.most_m > std::min(largest_m_, kWorthALook_m)) {
+        place.most_m = others_.distance_m(point, place.most_m);
+        largest_m_ = std::max(largest_m_, place.most_m);
+      }
+      if (last && std::max(last->most_m, place.most_m) > kWorthALook_m) look_between(*last, place);
+      last = place;
+    };
     for (const Eigen::Vector2d& point : line) {
-      const double near_m = distance_beside_m(point, beside, at);
-      if (near_m > largest_m_) largest_m_ = std::max(largest_m_, others_.distance_m(point, near_m));
+      if (last) {
+        const Eigen::Vector2d from = last->at, step = point - from;
+        const double parts = std::ceil(step.norm() / kStride_m);
+        for (double i = 1.0; i < parts; i += 1.0) look(from + i / parts * step);
+      }
+      look(point);
     }
   }
 
   double largest_m() const { return largest_m_; }
 
  private:
+  struct Place {
+    Eigen::Vector2d at;
+    double most_m;  ///< it is no farther from the others
+  };
+
+  // No place between is farther off than half of both distances and of the way.
+  void look_between(const Place& from, const Place& to) {
+    const double way_m = (to.at - from.at).norm();
+    const bool is_no_farther = 0.5 * (from.most_m + to.most_m + way_m) <= largest_m_;
+    if (way_m < kLookedAt_m || is_no_farther) return;
+    const Eigen::Vector2d at = 0.5 * (from.at + to.at);
+    const Place middle{at, others_.distance_m(at, 0.5 * (from.most_m + to.most_m + way_m))};
+    largest_m_ = std::max(largest_m_, middle.most_m);
+    look_between(from, middle);
+    look_between(middle, to);
+  }
+
   // Over the segments ahead, as long as one comes nearer.
   static double distance_beside_m(const Eigen::Vector2d& point, const LineSpan& beside,
                                   std::size_t& at) {

@@ -7,6 +7,7 @@
 #include "roadbed/map/opendrive/write/clothoid.h"
 #include "roadbed/map/opendrive/write/end_roles.h"
 #include "roadbed/map/opendrive/write/facing_ends.h"
+#include "roadbed/map/opendrive/write/road_lines.h"
 
 namespace roadbed::map::opendrive {
 namespace {
@@ -128,7 +129,20 @@ class EndLineFinder {
           lane.centre.in_map.at(from_m + reach_m) - lane.centre.in_map.at(from_m);
       ends.along += (planned.forward ? 1.0 : -1.0) * ahead.normalized();
     }
+    // A lane's middle may lead back in a bend of the map that is narrower than the lane.
+    if (road.source) ends.along = along_reference(road, last);
     return ends;
+  }
+
+  Eigen::Vector2d along_reference(const PlannedRoad& road, bool last) const {
+    const RoadBorder line = reference_along(road_map_, road, road.sections.front().left_lanes);
+    const std::size_t most = line.own_to - line.own_from;
+    const auto from_end = [&](std::size_t i) {
+      return Eigen::Vector2d(line.points[last ? line.own_to - i : line.own_from + i].head<2>());
+    };
+    std::size_t i = 1;
+    while (i < most && (from_end(i) - from_end(0)).norm() < kShort_m) ++i;
+    return (last ? -1.0 : 1.0) * (from_end(i) - from_end(0)).normalized();
   }
 
   // Through the ends where they are in line, square to the road, and half-way between.

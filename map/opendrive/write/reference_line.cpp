@@ -113,29 +113,50 @@ class ClothoidCutter {
 
   std::vector<geometry::PlanPiece> cut() {
     std::vector<geometry::PlanPiece> pieces;
-    double s_m = 0.0;
+    std::vector<std::size_t> starts;
     for (std::size_t from = 0; from + 1 < poses_.size();) {
-      auto [piece, to] = longest(from, s_m);
-      if (!piece) {  // turns too sharply for any: straight on
-        piece = geometry::PlanPiece{s_m, step_m(from), poses_[from], geometry::LineCurve{}};
+      auto [piece, to] = longest(from, end_m(pieces));
+      if (!piece && reach_end_from_before(pieces, starts)) break;
+      if (!piece) {  // turns back altogether: straight on
+        to = from + 1;
+        piece = geometry::PlanPiece{end_m(pieces), step_m(from), poses_[from], {}};
       }
-      s_m += piece->length_m;
       pieces.push_back(*piece);
+      starts.push_back(from);
       from = to;
     }
     return pieces;
   }
 
  private:
+  static double end_m(const std::vector<geometry::PlanPiece>& pieces) {
+    return pieces.empty() ? 0.0 : pieces.back().s_m + pieces.back().length_m;
+  }
+
+  // The last of the pieces that may lead to the end instead does; those behind it go.
+  bool reach_end_from_before(std::vector<geometry::PlanPiece>& pieces,
+                             const std::vector<std::size_t>& starts) const {
+    for (std::size_t i = pieces.size(); i-- > 0;) {
+      const auto piece = clothoid_between(poses_[starts[i]], poses_.back(), pieces[i].s_m);
+      if (!piece) continue;
+      pieces.resize(i);
+      pieces.push_back(*piece);
+      return true;
+    }
+    return false;
+  }
+
   double step_m(std::size_t i) const {
     return std::max(1e-6, (poses_[i + 1].position() - poses_[i].position()).norm());
   }
 
-  // The longest piece from a point on, by doubling its reach, then halving.
+  // The longest piece from a point on, by doubling its reach, then halving. Points to which the
+  // line would have to turn too sharply are passed by.
   std::pair<std::optional<geometry::PlanPiece>, std::size_t> longest(std::size_t from,
                                                                      double s_m) const {
     std::size_t good = from + 1, bad = poses_.size();
     auto best = clothoid_between(poses_[from], poses_[good], s_m);
+    while (!best && good + 1 < bad) best = clothoid_between(poses_[from], poses_[++good], s_m);
     const auto reaches = [&](std::size_t to) {
       auto piece = clothoid_between(poses_[from], poses_[to], s_m);
       if (!piece || !keeps(*piece, from, to)) return false;
@@ -143,7 +164,7 @@ class ClothoidCutter {
       good = to;
       return true;
     };
-    for (std::size_t reach = 2; good + 1 < poses_.size(); reach *= 2) {
+    for (std::size_t reach = 2 * (good - from); good + 1 < poses_.size(); reach *= 2) {
       const std::size_t to = std::min(from + reach, poses_.size() - 1);
       if (reaches(to)) continue;
       bad = to;

@@ -25,8 +25,8 @@
 namespace roadbed::map::opendrive {
 namespace {
 
-constexpr double kHeading_rad = 5e-10;  // written within
-constexpr double kAim_m = 0.01;         // borders that are farther off are named
+constexpr double kHeading_rad = 5e-10, kLength_m = 5e-7;  // written within
+constexpr double kAim_m = 0.01;                           // borders that are farther off are named
 
 struct Bounds {
   Eigen::Vector2d low{1e300, 1e300}, high{-1e300, -1e300};
@@ -165,10 +165,14 @@ class FileWriter {
       const double to_m = std::min(part.to_m, piece.s_m + piece.length_m);
       if (to_m - from_m < 1e-6) continue;
       const geometry::PlanPoint start = geometry::plan_point(piece, from_m);
+      const geometry::PlanPoint end = geometry::plan_point(piece, to_m);
+      const double bend_per_m =
+          std::max(std::abs(start.curvature_per_m), std::abs(end.curvature_per_m));
       const Eigen::Vector2d at = road_map_.to_source(start.pose.position());
       add("<geometry s=\"{}\" x=\"{}\" y=\"{}\" hdg=\"{}\" length=\"{}\">",
           short_number(from_m - part.from_m), short_number(at.x()), short_number(at.y()),
-          number_within(start.pose.heading_rad, kHeading_rad), short_number(to_m - from_m));
+          number_within(start.pose.heading_rad, kHeading_rad),
+          number_within(to_m - from_m, kLength_m / std::max(1.0, bend_per_m)));
       const auto curvature = [&](double value_per_m) {
         return number_within(value_per_m, kHeading_rad / std::max(1.0, to_m - from_m));
       };
@@ -178,7 +182,7 @@ class FileWriter {
         add("<arc curvature=\"{}\"/>", curvature(arc->curvature_per_m));
       } else {
         add("<spiral curvStart=\"{}\" curvEnd=\"{}\"/>", curvature(start.curvature_per_m),
-            curvature(geometry::plan_point(piece, to_m).curvature_per_m));
+            curvature(end.curvature_per_m));
       }
       text_ += "</geometry>\n";
     }

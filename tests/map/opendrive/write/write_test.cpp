@@ -405,6 +405,18 @@ TEST(WriteOpenDrive, ARoadOfTheMapTurnsBackWhereItDoes) {
   }
 }
 
+// So that the lane's middle leads back at first.
+TEST(WriteOpenDrive, ARoadOfTheMapTurnsBackAsSoonAsItBegins) {
+  const RoadMap before = parse_map(
+      one_lane("<paramPoly3 aU=\"0\" bU=\"2.588\" cU=\"-1.363\" dU=\"0\" aV=\"0\" bV=\"0\" "
+               "cV=\"-4.134\" dV=\"0\" pRange=\"normalized\"/>",
+               4.632, 0.0),
+      "turn.xodr");
+  const opendrive::OpenDriveFile file = file_of(before);
+  EXPECT_LE(file.largest_error_m, 0.02);
+  EXPECT_LE(borders_apart_m(before, parse_map(file.bytes, "written.xodr")), 0.02);
+}
+
 TEST(WriteOpenDrive, ARoadOfTheMapBendsBehindALongStraight) {
   const RoadMap before = parse_map(
       one_lane(
