@@ -85,16 +85,21 @@ std::vector<LaneId> merging_lanes(const LaneGraph& graph, LaneId lane) {
 }
 
 bool drives_on_the_left(const RoadMap& road_map) {
-  std::ptrdiff_t left = 0;
+  std::ptrdiff_t by_side = 0, by_oncoming = 0;
   for (const Lane& lane : road_map.lanes()) {
-    const LaneLinks& links = road_map.graph().of(lane.id);
     if (!is_drivable(lane.type)) continue;
+    const double along_road_m = lane.origin.road_to_s_m - lane.origin.road_from_s_m;
+    if (lane.road && lane.one_way && along_road_m != 0.0) {
+      const bool on_left = !lane.origin.source_id.starts_with('-');
+      by_side += on_left == (along_road_m > 0.0) ? 1 : -1;
+    }
+    const LaneLinks& links = road_map.graph().of(lane.id);
     const auto meets = [&](const std::optional<Neighbour>& beside) {
       return beside && !beside->same_direction && is_drivable(road_map.lane(beside->lane).type);
     };
-    left += (meets(links.right) ? 1 : 0) - (meets(links.left) ? 1 : 0);
+    by_oncoming += (meets(links.right) ? 1 : 0) - (meets(links.left) ? 1 : 0);
   }
-  return left > 0;
+  return by_side != 0 ? by_side > 0 : by_oncoming > 0;
 }
 
 }  // namespace roadbed::map::derived

@@ -24,8 +24,9 @@ std::vector<Merge> merges(const LaneGraph& graph);
 /// In order of id.
 std::vector<LaneId> merging_lanes(const LaneGraph& graph, LaneId lane);
 
-/// Whether the map drives on the left: more of its opposite lanes have each other to their right
-/// than to their left. O(lanes).
+/// Whether the map drives on the left: of OpenDRIVE most lanes on the left of their roads lead
+/// along them (8.2, `rule`); elsewhere more opposite lanes have each other to their right than to
+/// their left. O(lanes).
 bool drives_on_the_left(const RoadMap& road_map);
 
 }  // namespace roadbed::map::derived

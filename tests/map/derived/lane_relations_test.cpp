@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "roadbed/tests/support/made_maps.h"
+#include "roadbed/tests/support/made_road.h"
 
 namespace roadbed::map {
 namespace {
@@ -42,6 +43,19 @@ TEST(OppositeLane, IsThatOfEveryLaneOnTheWayThere) {
   const auto opposite = opposite_lanes(LaneGraph(links));
   for (std::uint32_t i = 0; i + 1 < kLanes; ++i) EXPECT_EQ(opposite[i], LaneId{kLanes - 1}) << i;
   EXPECT_EQ(opposite[kLanes - 1], LaneId{kLanes - 2});
+}
+
+TEST(DrivesOnTheLeft, IsAsTheRoadsSayWithoutOncomingLanesBesideThem) {
+  for (const bool on_left_side : {false, true}) {
+    for (const bool left_hand : {false, true}) {
+      tests::MadeRoad road;
+      road.attributes = left_hand ? R"(rule="LHT")" : "";
+      const std::string lanes = on_left_side ? tests::made_lane(2) + tests::made_lane(1)
+                                             : tests::made_lane(-1) + tests::made_lane(-2);
+      road.lanes = tests::made_section(0.0, on_left_side ? lanes : "", on_left_side ? "" : lanes);
+      EXPECT_EQ(drives_on_the_left(tests::made_map(tests::made_road(road))), left_hand);
+    }
+  }
 }
 
 TEST(Merges, AreWhereLanesShareASuccessor) {
