@@ -9,6 +9,7 @@
 
 #include "roadbed/planning/behaviour/blocked_road.h"
 #include "roadbed/planning/behaviour/command_guard.h"
+#include "roadbed/planning/behaviour/command_hold.h"
 #include "roadbed/planning/behaviour/cruise_law.h"
 #include "roadbed/planning/behaviour/goal_lines.h"
 #include "roadbed/planning/behaviour/hypotheses.h"
@@ -78,6 +79,7 @@ class Planner::Impl {
     command.hypotheses = hypotheses_.take_outcomes();
     command.drive = last_plan_;
     guard_.look(best, scene, command);
+    if (!task_.goal) hold_.look(view.t_s, law_mps2_, command);
     if (!task_.goal) look_for_detour(view, passing.merging, command);
     view.speed_controller.sent(command.acceleration_mps2);
     last_command_mps2_ = command.acceleration_mps2;
@@ -269,6 +271,7 @@ class Planner::Impl {
                                               .no_lead = who_crosses_in_time(best, scene),
                                               .halt = scene.halt,
                                               .walkers = scene.walkers});
+    law_mps2_ = command.acceleration_mps2;
     if (!best.by_cruise_law) give_way(best, command);
     return command;
   }
@@ -366,6 +369,8 @@ class Planner::Impl {
   BlockedRoad blocked_road_;
   MissedLaneChange missed_change_;
   CommandGuard guard_;
+  CommandHold hold_;
+  double law_mps2_ = 0.0;  ///< with nobody to give way to
   double last_command_mps2_ = 0.0, last_set_speed_mps_ = 0.0;
   std::vector<SpeedState> last_plan_;
 };
