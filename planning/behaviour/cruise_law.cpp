@@ -76,7 +76,9 @@ PlannerCommand CruiseLaw::command(const Question& q) {
   if (halt) command.halt_m = halt->s_m - q.replanner().s_m();
   follows_ = chosen.behaviour == Behaviour::follow;
   explain(q, chosen, command);
-  if (lead) ease(q, *lead, command);
+  is_beside_line_ = command.behaviour == Behaviour::pass;
+  const double stops_at_s_m = std::min(q.on.line.goal_s_m(), halt ? halt->s_m : 1e9);
+  if (lead) ease(q, *lead, stops_at_s_m, command);
   if (lead) brake_for(*lead, speed, command);
   if (halt) brake_for(*halt, q, command);
   brake_for_no_path(q, lead, command);
@@ -87,9 +89,14 @@ PlannerCommand CruiseLaw::command(const Question& q) {
   return command;
 }
 
-/// The end of the lane that somebody is passed in is not to be passed either.
+/// The end of the lane that somebody is passed in is not to be passed either, nor where to wait for
+/// who is oncoming.
 std::optional<StopConstraint> CruiseLaw::nearer_halt(const Question& q) const {
   constexpr double kBeforeEnd_m = 25.0;  // to come back in
+  if (const auto& waits_at_s_m = q.passing.overtaking.waits_at_s_m) {
+    if (q.halt && q.halt->s_m < *waits_at_s_m) return q.halt;
+    return StopConstraint{.s_m = *waits_at_s_m, .reason = q.passing.overtaking.reason};
+  }
   if (q.maneuver != Maneuver::pass_in_lane) return q.halt;
   const double end_s_m = q.passing.in_lane.lane_end_s_m - vehicle_.front_m() - kBeforeEnd_m;
   if (q.halt && q.halt->s_m < end_s_m) return q.halt;
@@ -224,7 +231,8 @@ void CruiseLaw::explain(const Question& q, const SpeedAnswer& answer,
   const double end_m = chosen ? chosen->end_d_m : offset_m;
   if (answer.behaviour == Behaviour::cruise &&
       q.passing.merging.along == Merging::Along::route_line &&
-      std::max(std::abs(offset_m), std::abs(end_m)) > kBesideLine_m) {
+      std::max(std::abs(offset_m), std::abs(end_m)) >
+          (is_beside_line_ ? 0.5 : 1.0) * kBesideLine_m) {
     command.behaviour = Behaviour::pass;
     command.reason = fmt::format("the way is free {:.1f} m {} of the reference line",
                                  std::abs(end_m), end_m < 0.0 ? "right" : "left");
@@ -264,19 +272,30 @@ void CruiseLaw::explain_passing(const Question& q, PlannerCommand& command) cons
   }
 }
 
-/// In a gap that is safe the gap to keep may open slowly, so that nobody behind has to brake for
-/// it.
-void CruiseLaw::ease(const Question& q, const Lead& lead, PlannerCommand& command) const {
+/// In a gap that is safe, though shorter than what is kept, the gap to keep may open slowly, so
+/// that nobody behind has to brake for it.
+void CruiseLaw::ease(const Question& q, const Lead& lead, double stops_at_s_m,
+                     PlannerCommand& command) const {
   constexpr double kBrakesHard_mps2 = -0.5, kOpens_mps = 0.5, kStandingLead_mps = 1.0;
-  const bool opens = lead.speed_mps > q.view.measured.speed_mps + kOpens_mps;
+  constexpr double kEased_mps2 = 0.4, kLeastLeft_m = 0.5, kNotYetKept_m = 5.0;
+  const double speed_mps = q.view.measured.speed_mps;
+  const bool opens = lead.speed_mps > speed_mps + kOpens_mps;
   if (q.passing.merging.merged_behind != lead.obstacle || command.behaviour != Behaviour::follow) {
     return;
   }
-  const bool has_room =
-      lead.gap_m > room_ahead_m(q.view.measured.speed_mps, lead.speed_mps) - kEasedRoom_m;
+  const double stopping_m = 0.5 * speed_mps * speed_mps / decision_options_.deceleration_mps2;
+  const bool stops = stops_at_s_m - q.replanner().s_m() < stopping_m;
+  const double kept_m = decision_options_.standstill_gap_m +
+                        decision_options_.headway_s * lead.speed_mps + kNotYetKept_m;
+  const bool has_room = lead.gap_m > room_ahead_m(speed_mps, lead.speed_mps) - kEasedRoom_m;
   const bool stands = lead.speed_mps < kStandingLead_mps;
-  if (!has_room || stands || lead.acceleration_mps2 < kBrakesHard_mps2) return;
-  command.acceleration_mps2 = std::max(command.acceleration_mps2, opens ? 0.0 : -0.4);
+  const bool brakes = lead.acceleration_mps2 < kBrakesHard_mps2;
+  if (stops || lead.gap_m > kept_m || !has_room || stands || brakes) return;
+  const double closing_mps = std::max(0.0, speed_mps - lead.speed_mps);
+  const double left_m = lead.gap_m - room_ahead_m(lead.speed_mps, lead.speed_mps) + kEasedRoom_m;
+  const double needed_mps2 = 0.5 * closing_mps * closing_mps / std::max(kLeastLeft_m, left_m);
+  const double least_mps2 = opens ? 0.0 : -std::max(kEased_mps2, needed_mps2);
+  command.acceleration_mps2 = std::max(command.acceleration_mps2, least_mps2);
 }
 
 void CruiseLaw::brake_for(const Lead& lead, double speed_mps, PlannerCommand& command) const {

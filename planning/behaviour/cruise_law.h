@@ -75,7 +75,8 @@ class CruiseLaw {
   std::string lead_name(const Lead& lead) const;
   void explain(const Question& q, const SpeedAnswer& answer, PlannerCommand& command) const;
   void explain_passing(const Question& q, PlannerCommand& command) const;
-  void ease(const Question& q, const Lead& lead, PlannerCommand& command) const;
+  void ease(const Question& q, const Lead& lead, double stops_at_s_m,
+            PlannerCommand& command) const;
   void brake_for(const Lead& lead, double speed_mps, PlannerCommand& command) const;
   void brake_for(const StopConstraint& halt, const Question& q, PlannerCommand& command) const;
   void overtake(const Question& q, PlannerCommand& command) const;
@@ -85,8 +86,8 @@ class CruiseLaw {
   DecisionOptions decision_options_;
   int blocked_cycles_ = 0;  ///< without a path, in a row
   RightOfWay right_of_way_;
-  bool follows_ = false;             ///< in the last cycle
-  bool passes_within_lane_ = false;  ///< as the last cycle said
+  bool follows_ = false, is_beside_line_ = false;  ///< in the last cycle
+  bool passes_within_lane_ = false;                ///< as the last cycle said
   struct {
     double t_s = 0.0;
     std::optional<Lead> lead;

@@ -114,7 +114,8 @@ std::optional<Found> cheapest_route(const DetourQuestion& q, const RouteOptions&
   Router router(q.task.road_map, options);
   std::optional<Found> best;
   reason = "the vehicle stands along no lane";
-  const std::vector<RoutePlace> starts = places_under(q.task.road_map, q.measured.map_from_vehicle);
+  const std::vector<RoutePlace> starts =
+      places_to_set_off(q.task.road_map, q.measured.map_from_vehicle);
   for (std::size_t i = 0; i < starts.size(); ++i) {
     RouteAnswer answer = router.find(starts[i], goal_of(q.task.route));
     if (i == 0) reason = std::move(answer.reason);

@@ -69,6 +69,20 @@ void set_part(const map::Lane& lane, const ReferenceLine& line, PassingLane& par
   part.offset_m = count > 0 ? sum / count : 0.0;
 }
 
+// Of a lane's stations those within a part of it, as stations of the line.
+std::vector<map::StationRange> windows_along(const ReferenceLine& line, const map::Lane& lane,
+                                             const std::vector<map::StationRange>& windows,
+                                             const map::StationRange& part) {
+  std::vector<map::StationRange> along;
+  for (const map::StationRange& window : windows) {
+    const double from_m = std::max(window.from_s_m, part.from_s_m);
+    const double to_m = std::min(window.to_s_m, part.to_s_m);
+    if (to_m > from_m)
+      along.push_back({station_of(lane, from_m, line), station_of(lane, to_m, line)});
+  }
+  return along;
+}
+
 std::optional<PassingLane> beside(const map::RoadMap& road_map, const RouteLeg& leg, double side,
                                   const ReferenceLine& line) {
   const map::LaneLinks& links = road_map.graph().of(leg.lane);
@@ -80,13 +94,25 @@ std::optional<PassingLane> beside(const map::RoadMap& road_map, const RouteLeg& 
                    .to_s_m = station_of(own, leg.to_s_m, line)};
   set_part(road_map.lane(next->lane), line, lane);
   if (lane.to_s_m <= lane.from_s_m) return std::nullopt;
-  for (const map::StationRange& window : next->change_windows) {
-    const double from_m = std::max(window.from_s_m, leg.from_s_m);
-    const double to_m = std::min(window.to_s_m, leg.to_s_m);
-    if (to_m <= from_m) continue;
-    lane.change_windows.push_back({station_of(own, from_m, line), station_of(own, to_m, line)});
+  const map::StationRange of_leg{leg.from_s_m, leg.to_s_m};
+  lane.change_windows = windows_along(line, own, next->change_windows, of_leg);
+  const map::Lane& there = road_map.lane(next->lane);
+  const map::LaneLinks& from_there = road_map.graph().of(next->lane);
+  const std::optional<Neighbour>& back = side > 0.0 ? from_there.right : from_there.left;
+  if (back && back->lane == leg.lane) {
+    lane.return_windows = windows_along(line, there, back->change_windows, {0.0, there.length_m()});
   }
   return lane;
+}
+
+void append(const std::vector<map::StationRange>& windows, std::vector<map::StationRange>& all) {
+  for (const map::StationRange& window : windows) {
+    if (!all.empty() && window.from_s_m - all.back().to_s_m < kLanesJoined_m) {
+      all.back().to_s_m = window.to_s_m;
+    } else {
+      all.push_back(window);
+    }
+  }
 }
 
 void join(PassingLane next, std::vector<PassingLane>& lanes) {
@@ -97,15 +123,8 @@ void join(PassingLane next, std::vector<PassingLane>& lanes) {
   }
   PassingLane& last = lanes.back();
   last.to_s_m = std::max(last.to_s_m, next.to_s_m);
-  for (const map::StationRange& window : next.change_windows) {
-    const bool goes_on = !last.change_windows.empty() &&
-                         window.from_s_m - last.change_windows.back().to_s_m < kLanesJoined_m;
-    if (goes_on) {
-      last.change_windows.back().to_s_m = window.to_s_m;
-    } else {
-      last.change_windows.push_back(window);
-    }
-  }
+  append(next.change_windows, last.change_windows);
+  append(next.return_windows, last.return_windows);
 }
 
 /// On which one passes: 1 left, −1 right, where one drives on the left.
@@ -258,7 +277,13 @@ std::optional<std::string> LanePassing::why_no_gap(const Scene& scene, double d_
 }
 
 std::optional<std::string> LanePassing::why_not(const Scene& scene, const MoverOnLine& lead) const {
-  if (!may_cross(scene)) return "the marking may not be crossed here";
+  if (!may_cross(scene, scene.lane.change_windows)) return "the marking may not be crossed here";
+  const auto comes_back = [&](const map::StationRange& window) {
+    return window.to_s_m > lead.s_m + kLaneChange_s * scene.free_mps;
+  };
+  if (std::ranges::none_of(scene.lane.return_windows, comes_back)) {
+    return "the marking may not be crossed to come back";
+  }
   const double closing_mps = std::max(0.0, scene.view.speed_mps - lead.speed_mps);
   if (gap_m(scene, lead) < kPullOut_m + kPullOut_s * closing_mps)
     return "it is too near to pull out";
@@ -266,11 +291,14 @@ std::optional<std::string> LanePassing::why_not(const Scene& scene, const MoverO
   return why_no_gap(scene, scene.lane.offset_m, lead.speed_mps);
 }
 
-/// The marking may be crossed here, and as long as a change takes.
-bool LanePassing::may_cross(const Scene& scene) const {
-  return std::ranges::any_of(scene.lane.change_windows, [&](const map::StationRange& window) {
-    return scene.view.at.s_m >= window.from_s_m &&
-           scene.view.at.s_m + kLaneChange_s * scene.view.speed_mps <= window.to_s_m;
+/// The marking may be crossed here, and as long as a change takes that speeds up.
+bool LanePassing::may_cross(const Scene& scene,
+                            const std::vector<map::StationRange>& windows) const {
+  const double way_m =
+      geometry::speeding_up_m(scene.view.speed_mps, kOwnSpeedUp_mps2,
+                              std::max(scene.view.speed_mps, scene.free_mps), kLaneChange_s);
+  return std::ranges::any_of(windows, [&](const map::StationRange& window) {
+    return scene.view.at.s_m >= window.from_s_m && scene.view.at.s_m + way_m <= window.to_s_m;
   });
 }
 
@@ -306,10 +334,10 @@ bool LanePassing::may_return(const Scene& scene) const {
     if (soon && gained_s(scene, *lead) >= kLeastGain_s && !why_no_room(scene, *lead)) return false;
   }
   const bool is_last_chance =
-      std::ranges::none_of(scene.lane.change_windows, [&](const map::StationRange& window) {
+      std::ranges::none_of(scene.lane.return_windows, [&](const map::StationRange& window) {
         return window.to_s_m > scene.view.at.s_m + kLaneChange_s * scene.view.speed_mps;
       });
-  return (may_cross(scene) || is_last_chance) && !why_no_gap(scene, 0.0);
+  return (may_cross(scene, scene.lane.return_windows) || is_last_chance) && !why_no_gap(scene, 0.0);
 }
 
 bool LanePassing::has_left_lane(const Scene& scene) const {

@@ -18,7 +18,8 @@ namespace roadbed::planning::inline maneuvers {
 struct PassingLane {
   double from_s_m = 0.0, to_s_m = 0.0;  ///< of the line, where the lane is beside it
   double offset_m = 0.0;                ///< of its middle from the line, positive to the left
-  std::vector<map::StationRange> change_windows = {};  ///< of the line: the marking may be crossed
+  /// Of the line: where the marking may be crossed to get there, and to come back.
+  std::vector<map::StationRange> change_windows = {}, return_windows = {};
 };
 
 /// All along a route, by station; lanes that follow on one another are one. One passes on the left,
@@ -78,7 +79,7 @@ class LanePassing {
   std::optional<std::string> why_no_gap(const Scene& scene, double d_m,
                                         std::optional<double> gain_over_mps = {}) const;
   std::optional<double> falls_back_mps(const Scene& scene) const;
-  bool may_cross(const Scene& scene) const;
+  bool may_cross(const Scene& scene, const std::vector<map::StationRange>& windows) const;
   double soon_m(const Scene& scene, const MoverOnLine& lead) const;
   bool may_return(const Scene& scene) const;
   bool has_left_lane(const Scene& scene) const;

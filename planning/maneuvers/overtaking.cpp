@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace roadbed::planning::inline maneuvers {
@@ -23,6 +24,9 @@ constexpr double kReturnGap_m = 4.0, kReturnGap_s = 0.4;  // before who was over
 constexpr double kGapAhead_m = 5.0, kGapAhead_s = 1.0;    // to who drives ahead of that one
 constexpr double kBehindRear_m = 3.0;                     // of who is not overtaken after all
 constexpr double kMoves_mps = 1.0, kSlower_mps = 2.5;
+// Towards a vehicle that passes who stands, and what that one keeps to pull out from where it
+// waits.
+constexpr double kComes_mps = 0.5, kRoomToPullOut_m = 8.0;
 constexpr double kLeadWithin_m = 70.0;
 constexpr double kBeforeEnd_m = 10.0;  // of the stretch, to be back in the lane
 constexpr double kBehind_m = 3.0;      // kept from traffic that comes up behind in the other lane
@@ -49,6 +53,11 @@ double worst_speed_mps(const MoverOnLine& mover, double after_s, double limit_mp
 /// Of the vehicle, as it is planned; station of the rear axle.
 struct Overtaking::State {
   double after_s, s_m, speed_mps;
+};
+
+/// Now, past the one that is overtaken, and back in the lane.
+struct Overtaking::Course {
+  const State &from, &past, &back;
 };
 
 Overtaking::Overtaking(const geometry::VehicleShape& vehicle, const DrivingTask& task,
@@ -161,20 +170,64 @@ std::optional<std::string> Overtaking::why_not(const State& from, const MoverOnL
   if (to_end_m < kBeforeEnd_m) {
     return fmt::format("it would end {:.0f} m past where it has to", kBeforeEnd_m - to_end_m);
   }
-  const double pass_m = pass_at_m(lead, stretch);
+  return who_is_in_the_way({from, *past, back}, lead, movers, stretch);
+}
+
+/// Whose gap is too short; none: nobody's.
+std::optional<std::string> Overtaking::who_is_in_the_way(const Course& course,
+                                                         const MoverOnLine& lead,
+                                                         const std::vector<MoverOnLine>& movers,
+                                                         const OncomingLaneSegment& stretch) const {
+  const double pass_m = pass_at_m(lead, stretch), from_s_m = course.from.s_m;
   for (const MoverOnLine& mover : movers) {
-    if (mover.obstacle == lead.obstacle || is_no_matter(mover, from, pass_m)) continue;
-    const double missing = missing_m(mover, from.s_m, *past, back, stretch.limit_mps);
+    if (mover.obstacle == lead.obstacle || is_no_matter(mover, course.from, pass_m)) continue;
+    const double missing = missing_m(mover, from_s_m, course.past, course.back, stretch.limit_mps);
     if (missing <= 0.0) continue;
     if (mover.obstacle == kHidden) {
       return fmt::format("{:.0f} m of the other lane are seen, {:.0f} m are missing",
-                         mover.s_m - from.s_m, missing);
+                         mover.s_m - from_s_m, missing);
     }
+    const char* where = mover.speed_mps < 0.0             ? "oncoming"
+                        : mover.shares_way(0.0, vehicle_) ? "ahead of it"
+                                                          : "in the other lane";
     return fmt::format("{} is {}, the gap is {:.0f} m too short",
-                       task_.obstacles[mover.obstacle].id,
-                       mover.speed_mps < 0.0 ? "oncoming" : "in the other lane", missing);
+                       task_.obstacles[mover.obstacle].id, where, missing);
   }
   return std::nullopt;
+}
+
+/// Behind somebody who stands for good, and whom only the other lane leads past: as long as
+/// somebody comes there before the vehicle would be back, at worst; unless it has left its lane
+/// already.
+std::optional<Overtaking::Decision> Overtaking::waits_for_oncoming(
+    const ViewOnLine& view, const std::vector<MoverOnLine>& movers) const {
+  const OncomingLaneSegment* stretch = stretch_at(view.at.s_m);
+  if (stretch == nullptr || overtaken_) return std::nullopt;
+  const std::vector<MoverOnLine> all = movers_on_line(task_.line, view.traffic, view.t_s, true);
+  const MoverOnLine* next = nearest_ahead(all, view);
+  if (next == nullptr || !next->stands) return std::nullopt;
+  const double within_m = stretch->own_edge_m - 0.5 * vehicle_.width_m;
+  const double least_m = next->half_width_m + 0.5 * vehicle_.width_m + kLeastBeside_m;
+  const bool has_begun = stretch->side * view.at.d_m > within_m + kNotInLane_m;
+  const bool has_room = stretch->side * next->d_m + least_m <= within_m + kNotInLane_m;
+  const State now{0.0, view.at.s_m, view.speed_mps};
+  const std::optional<State> past = this->past(now, *next);
+  if (has_begun || has_room || !past) return std::nullopt;
+  State back = *past;
+  while (back.after_s < past->after_s + kBackInLane_s) back = step(back);
+  std::vector<MoverOnLine> oncoming;
+  std::ranges::copy_if(movers, std::back_inserter(oncoming),
+                       [](const MoverOnLine& mover) { return mover.speed_mps < -kComes_mps; });
+  const auto who = who_is_in_the_way({now, *past, back}, *next, oncoming, *stretch);
+  if (!who) return std::nullopt;
+  Decision decision{
+      .keep_within_m = std::max(0.0, within_m),
+      .side = stretch->side,
+      .reason = fmt::format("{} is not passed: {}", task_.obstacles[next->obstacle].id, *who)};
+  const double at_s_m = next->rear_m() - kRoomToPullOut_m - vehicle_.front_m();
+  const double stopping_m = 0.5 * view.speed_mps * view.speed_mps / kFallingBack_mps2;
+  if (at_s_m > view.at.s_m + stopping_m) decision.waits_at_s_m = at_s_m;
+  return decision;
 }
 
 /// Somebody where the other lane is first hidden for as long as a car is, unless somebody is seen
@@ -265,6 +318,7 @@ Overtaking::Decision Overtaking::look(const ViewOnLine& view) {
   const MoverOnLine* lead = lead_of(movers, view);
   const geometry::VehicleShape& vehicle = vehicle_;
   const double within_m = stretch ? stretch->own_edge_m - 0.5 * vehicle.width_m : 0.0;
+  if (auto waiting = waits_for_oncoming(view, movers)) return *std::move(waiting);
   if (const MoverOnLine* next = nearest_ahead(movers, view);
       !lead && next && waits(*next, view.t_s)) {
     overtaken_.reset();
@@ -301,6 +355,7 @@ Overtaking::Decision Overtaking::look(const ViewOnLine& view) {
     }
   } else if (has_ended(view, *lead)) {
     overtaken_.reset();
+    if (why) decision.reason = fmt::format("{} is not overtaken: {}", name, *why);
   }
   if (!overtaken_) return decision;
   falls_back_ = falls_back_ || (why && can_fall_back(now, *lead, with_hidden, *stretch));

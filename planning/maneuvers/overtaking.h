@@ -47,7 +47,8 @@ std::vector<OncomingLaneSegment> oncoming_lane_segments(const map::RoadMap& road
 /// vehicle drives at the edge of its lane. All of this is asked again in each cycle: what can no
 /// longer be ended in time is given up while that is possible. Where the vehicle may not, or does
 /// not want to, it keeps to its own lane as long as the one ahead moves or waits, as in a queue;
-/// what stands for good is passed as the lateral planner chooses.
+/// what stands for good is passed as the lateral planner chooses, but not before who is oncoming
+/// and would be there, at its worst, before the vehicle is back.
 class Overtaking {
  public:
   /// What the lateral planner is asked for.
@@ -59,6 +60,8 @@ class Overtaking {
     double gap_m = 0.0;                         ///< to its rear; less than 0 beside it
     double side = 1.0;                          ///< of the other lane: 1 left, −1 right
     bool looks_past = false;  ///< more of the other lane is seen from where `keep_within_m` ends
+    /// Station to wait at, with room to pull out again, for who is oncoming; none: nobody is.
+    std::optional<double> waits_at_s_m = {};
     std::string reason = {};  ///< why it is (not) overtaken; empty: nobody to overtake
   };
 
@@ -69,6 +72,7 @@ class Overtaking {
 
  private:
   struct State;
+  struct Course;
   const MoverOnLine* nearest_ahead(const std::vector<MoverOnLine>& movers,
                                    const ViewOnLine& view) const;
   bool waits(const MoverOnLine& mover, double t_s) const;
@@ -77,6 +81,11 @@ class Overtaking {
   std::optional<std::string> why_not(const State& from, const MoverOnLine& lead,
                                      const std::vector<MoverOnLine>& movers,
                                      const OncomingLaneSegment& stretch) const;
+  std::optional<std::string> who_is_in_the_way(const Course& course, const MoverOnLine& lead,
+                                               const std::vector<MoverOnLine>& movers,
+                                               const OncomingLaneSegment& stretch) const;
+  std::optional<Decision> waits_for_oncoming(const ViewOnLine& view,
+                                             const std::vector<MoverOnLine>& movers) const;
   bool can_fall_back(const State& from, const MoverOnLine& lead,
                      const std::vector<MoverOnLine>& movers,
                      const OncomingLaneSegment& stretch) const;

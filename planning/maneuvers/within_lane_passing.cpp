@@ -11,8 +11,9 @@ namespace roadbed::planning::inline maneuvers {
 namespace {
 
 constexpr double kBesideCyclist_m = 1.5;
-constexpr double kRidesAlong = 0.8;  // cosine, of who rides as the vehicle does
-constexpr double kReach_m = 25.0;    // of a path that begins to pass
+constexpr double kRidesAlong = 0.8;                      // cosine, of who rides as the vehicle does
+constexpr double kReach_m = 25.0;                        // of a path that begins to pass
+constexpr double kBraking_mps2 = 1.5, kBefore_m = 10.0;  // with which one would close up
 constexpr double kSlowerBy_mps = 1.0, kBehindWithin_s = 8.0, kMovesAlong_mps = 0.3;
 
 bool is_cyclist(const Obstacle& obstacle) { return obstacle.kind == "bicycle"; }
@@ -28,7 +29,10 @@ const MoverOnLine* slower_ahead(const WithinLaneQuestion& q,
   if (!nearest || nearest->speed_mps < kMovesAlong_mps) return nullptr;
   const double gap_m = nearest->rear_m() - q.view.at.s_m - q.vehicle.front_m();
   const double slower_mps = q.free_mps - nearest->speed_mps;
-  const bool is_soon = gap_m < std::min(kReach_m, kBehindWithin_s * slower_mps);
+  const double closing_mps = std::max(0.0, q.view.speed_mps - nearest->speed_mps);
+  const double braking_m = 0.5 * closing_mps * closing_mps / kBraking_mps2 + kBefore_m;
+  const bool is_soon =
+      gap_m < std::min(std::max(kReach_m, braking_m), kBehindWithin_s * slower_mps);
   return slower_mps >= kSlowerBy_mps && is_soon ? nearest : nullptr;
 }
 

@@ -63,31 +63,15 @@ bool heads_along(const geometry::Pose2& map_from_vehicle, double heading_rad) {
   return std::cos(map_from_vehicle.heading_rad - heading_rad) >= kAcross;
 }
 
-/// Far from it, or turned around.
+/// Far from it, or behind its goal, or turned around.
 /// @param near_s_m  where it was: the line may come over itself.
 bool is_away_from(const ReferenceLine& line, const geometry::Pose2& map_from_vehicle,
                   double near_s_m) {
   const Eigen::Vector2d here = map_from_vehicle.position();
-  const ReferencePoint foot = line.at(line.project(here, near_s_m).s_m);
-  return (here - foot.in_map).norm() > kTakenAway_m ||
+  const double s_m = line.project(here, near_s_m).s_m;
+  const ReferencePoint foot = line.at(s_m);
+  return (here - foot.in_map).norm() > kTakenAway_m || s_m > line.goal_s_m() + kTakenAway_m ||
          !heads_along(map_from_vehicle, foot.heading_rad);
-}
-
-/// Lanes under the vehicle that it heads along; else the one that fits it best nearby, as on a
-/// driveway or across a lane.
-std::vector<RoutePlace> places_to_set_off(const map::RoadMap& road_map,
-                                          const geometry::Pose2& map_from_vehicle) {
-  constexpr double reach_m = 3.0;
-  std::vector<RoutePlace> places = places_under(road_map, map_from_vehicle);
-  if (!places.empty()) return places;
-  for (const PlaceCandidate& near :
-       match_place(road_map, map_from_vehicle.position(), map_from_vehicle.heading_rad,
-                   {.reach_m = reach_m})) {
-    if (near.verdict != MatchVerdict::chosen) continue;
-    if (!heads_along(map_from_vehicle, near.heading_rad)) continue;
-    places.push_back({near.place, near.sense == Sense::against ? Sense::against : Sense::along});
-  }
-  return places;
 }
 
 /// From the lane that fits the vehicle best of those from which there is a route.

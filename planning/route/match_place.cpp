@@ -105,4 +105,19 @@ std::vector<RoutePlace> places_under(const map::RoadMap& road_map,
   return places;
 }
 
+std::vector<RoutePlace> places_to_set_off(const map::RoadMap& road_map,
+                                          const geometry::Pose2& map_from_vehicle) {
+  constexpr double kReach_m = 3.0, kAcross = -0.2;  // cosine: a little more than across
+  std::vector<RoutePlace> places = places_under(road_map, map_from_vehicle);
+  if (!places.empty()) return places;
+  for (const PlaceCandidate& near :
+       match_place(road_map, map_from_vehicle.position(), map_from_vehicle.heading_rad,
+                   {.reach_m = kReach_m})) {
+    const bool heads_along = std::cos(map_from_vehicle.heading_rad - near.heading_rad) >= kAcross;
+    if (near.verdict != MatchVerdict::chosen || !heads_along) continue;
+    places.push_back({near.place, near.sense == Sense::against ? Sense::against : Sense::along});
+  }
+  return places;
+}
+
 }  // namespace roadbed::planning::route

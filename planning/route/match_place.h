@@ -52,4 +52,9 @@ std::vector<PlaceCandidate> match_place(const map::RoadMap& road_map, const Eige
 std::vector<RoutePlace> places_under(const map::RoadMap& road_map,
                                      const geometry::Pose2& map_from_vehicle);
 
+/// The same; where there is none, the lane within 3 m that fits it best, as on a driveway or at an
+/// angle in a lane, if it does not head against it.
+std::vector<RoutePlace> places_to_set_off(const map::RoadMap& road_map,
+                                          const geometry::Pose2& map_from_vehicle);
+
 }  // namespace roadbed::planning::route

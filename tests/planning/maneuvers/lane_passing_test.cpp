@@ -33,12 +33,13 @@ struct Scene {
   std::optional<double> parked_at_m = std::nullopt;     ///< a car in the next lane
   std::optional<double> speeds_up_at_s = std::nullopt;  ///< the lead, to the desired speed
   std::optional<double> queue_at_m = std::nullopt;  ///< a car that stands in the own lane, known
+  const char* change = "both";                      ///< which way the marking may be crossed
 };
 
-std::string lane(int id, bool may_cross) {
+std::string lane(int id, bool may_cross, const char* change = "both") {
   return tests::made_lane(
       id, fmt::format(R"(<roadMark sOffset="0" type="{0}" color="white" laneChange="{1}"/>)",
-                      may_cross ? "broken" : "solid", may_cross ? "both" : "none"));
+                      may_cross ? "broken" : "solid", may_cross ? change : "none"));
 }
 
 /// One way, two lanes eastwards or one; in a bend of 200 m radius to the left.
@@ -49,13 +50,14 @@ std::filesystem::path map_of(const Scene& scene) {
   road.length_m = 800.0;
   road.type = R"(<type s="0" type="rural"><speed max="30" unit="m/s"/></type>)";
   road.lanes = tests::made_section(
-      0.0, "", has_two ? lane(-1, scene.may_cross) + lane(-2, false) : lane(-1, false));
+      0.0, "",
+      has_two ? lane(-1, scene.may_cross, scene.change) + lane(-2, false) : lane(-1, false));
   if (scene.in_bend) {
     road.plan_view =
         R"(<geometry s="0" x="0" y="0" hdg="0" length="800"><arc curvature="0.005"/></geometry>)";
   }
-  return tests::made_file(fmt::format("passing_{}{}{}", has_two, scene.in_bend, scene.may_cross),
-                          road);
+  return tests::made_file(
+      fmt::format("passing_{}{}{}{}", has_two, scene.in_bend, scene.may_cross, scene.change), road);
 }
 
 ScenarioPlace place(const char* lane, double s_m) {
@@ -203,6 +205,13 @@ TEST(LanePassing, SaysWhoIsInTheWay) {
   EXPECT_NE(reasons({4.0, 12.0, NextLane::free, false, false})
                 .find("lead is not passed: the marking may not be crossed here"),
             std::string::npos);
+  Scene one_way{4.0, 12.0};
+  for (const char* change : {"increase", "decrease"}) {
+    one_way.change = change;
+    const std::string why = reasons(one_way);
+    EXPECT_EQ(why.find("passes lead"), std::string::npos) << change;
+    EXPECT_NE(why.find("the marking may not be crossed"), std::string::npos) << change;
+  }
   EXPECT_NE(reasons({4.0, 12.0, NextLane::free_on_the_right})
                 .find("lead is not passed: there is no lane to its left, and nobody is passed on "
                       "the right"),

@@ -222,6 +222,15 @@ TEST(Merging, NobodyInTheNextLaneIsNoReasonToSlowDown) {
   }
 }
 
+// Far ahead when it is merged behind, and much slower: closed up to as to anybody.
+TEST(Merging, WhoIsMergedBehindIsKeptFromWhenClosedUpTo) {
+  const Driven driven =
+      drive_in({.own_mps = 16.0, .others_mps = 7.5, .gap_m = 500.0, .first_m = 480.0, .cars = 1});
+  EXPECT_EQ(driven.drive.verdict.outcome, Outcome::goal_reached) << driven.drive.verdict.text;
+  EXPECT_GT(driven.clearance_m, 12.0);
+  EXPECT_LT(driven.own_brake_mps2, 2.2);
+}
+
 TEST(Merging, ThereIsAnAnswerAtAnySpeedAndAtAnyDistance) {
   const std::vector<planning::MergeMover> others{{0, -20.0, 2.25, 10.0}, {1, 40.0, 2.25, 0.0}};
   for (const double speed_mps : {0.0, 3.0, 10.0, 40.0}) {

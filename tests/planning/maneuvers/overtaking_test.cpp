@@ -135,6 +135,29 @@ TEST(Overtaking, WhoWaitsInTheLaneIsNotPassed) {
   EXPECT_GT(result.clearance_m, 2.0);
 }
 
+TEST(Overtaking, WhoStandsForGoodIsPassedAfterThoseWhoCome) {
+  Scenario scenario = overtake();
+  const ScenarioPlace place{.text = "lane:1/0/-1@150", .pointer = "/test"};
+  int waits = 0;
+  for (const double aside_m : {0.0, -0.5}) {
+    for (double x_m = 180.0; x_m <= 420.0; x_m += 60.0) {
+      SCOPED_TRACE(testing::Message() << aside_m << " m aside, comes from " << x_m << " m");
+      scenario.obstacles = {
+          {.id = "parked", .motion = ParkedObstacle{ParkedObstacle::Beside{place, aside_m}}},
+          comes({{0.0, x_m}, {60.0, x_m - 600.0}})};
+      const Passed drive = passed(scenario);
+      EXPECT_EQ(drive.drive.verdict.outcome, Outcome::goal_reached) << drive.drive.verdict.text;
+      EXPECT_GE(drive.clearance_m, 0.29);
+      EXPECT_GE(drive.least_margin_s, 1.5);
+      waits += std::ranges::any_of(drive.drive.cycles, [](const DriveCycle& cycle) {
+        return cycle.behaviour == planning::Behaviour::yield &&
+               cycle.reason.starts_with("parked is not passed: comes is oncoming");
+      });
+    }
+  }
+  EXPECT_GE(waits, 4);
+}
+
 TEST(Overtaking, UsesTheOtherLaneWhereTheMarkingBetweenMayBeCrossed) {
   const auto stretches = [](const std::string& file, const std::string& from,
                             const std::string& to) {

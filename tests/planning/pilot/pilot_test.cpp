@@ -102,6 +102,18 @@ TEST_F(Pilots, StopWhereTheyAreWhenTurnedAroundOrTakenAwayFromAllRoads) {
   }
 }
 
+TEST_F(Pilots, AreNotAtTheirGoalWhenPutFarBehindIt) {
+  Pilot pilot(setup());
+  pilot.step(view_);
+  view_.t_s += 2.0;
+  const geometry::Pose2 goal = place("6/0/-1", 100.0);
+  view_.ego.map_from_vehicle = goal * geometry::Pose2{500.0, 0.0, 0.0};
+  const PilotAnswer answer = pilot.step(view_);
+  EXPECT_FALSE(answer.is_at_goal);
+  EXPECT_TRUE(answer.decision.reason.starts_with("no route leads to the goal"))
+      << answer.decision.reason;
+}
+
 TEST_F(Pilots, StandBehindWhoStandsWhereverTheyAreNotTold) {
   Pilot pilot(setup());
   // All lanes of the bypass are closed, 60 m ahead.
