@@ -81,7 +81,7 @@ PlannerCommand CruiseLaw::command(const Question& q) {
   if (lead) ease(q, *lead, stops_at_s_m, command);
   if (lead) brake_for(*lead, speed, command);
   if (halt) brake_for(*halt, q, command);
-  brake_for_no_path(q, lead, command);
+  brake_for_no_path(q, lead, halt, command);
   if (q.passing.overtaking.overtaken) overtake(q, command);
   explain_passing(q, command);
   passes_within_lane_ =
@@ -189,7 +189,7 @@ SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead
                                      .let_in = q.passing.letting_in.behind,
                                      .let_in_reason = q.passing.letting_in.reason,
                                      .follows = follows_,
-                                     .path_left_m = path_left_m(q, lead),
+                                     .path_left_m = path_left_m(q, lead, halt),
                                      .halt = halt,
                                      .seen_ahead_m = seen_ahead_m(q),
                                      .walkers = q.walkers,
@@ -209,12 +209,14 @@ SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead
   return answer;
 }
 
-/// How far the kept path goes when nothing is feasible. A lead on it bounds the speed by itself.
-std::optional<double> CruiseLaw::path_left_m(const Question& q,
-                                             const std::optional<Lead>& lead) const {
+/// How far the kept path goes when nothing is feasible. A lead on it bounds the speed by itself, or
+/// the halt before him.
+std::optional<double> CruiseLaw::path_left_m(const Question& q, const std::optional<Lead>& lead,
+                                             const std::optional<StopConstraint>& halt) const {
   if (q.replanner().last_plan().chosen) return std::nullopt;
-  if (q.replanner().something_is_in_the_way() && !lead) return 0.0;
-  return q.replanner().checked_ahead_m();
+  if (!q.replanner().something_is_in_the_way() || lead) return q.replanner().checked_ahead_m();
+  const bool halts_first = halt && lead_ahead(q, std::nullopt);
+  return halts_first ? std::max(0.0, halt->s_m - q.replanner().s_m()) : 0.0;
 }
 
 std::string CruiseLaw::lead_name(const Lead& lead) const {
@@ -263,6 +265,10 @@ void CruiseLaw::explain_passing(const Question& q, PlannerCommand& command) cons
   }
   std::string why_not = lane.reason.empty() ? overtaking.reason : lane.reason;
   if (why_not.empty()) why_not = q.passing.within_lane.reason;
+  if (why_not.empty() && q.passing.within_lane.passed && q.maneuver != Maneuver::pass_within_lane) {
+    why_not = fmt::format("{} is not passed: no path in the lane is clear of where it may go",
+                          task_.obstacles[*q.passing.within_lane.passed].id);
+  }
   if (lane.passed && q.maneuver != Maneuver::pass_in_lane) {
     why_not = fmt::format("{} is not passed: no path leads to the next lane",
                           task_.obstacles[*lane.passed].id);
@@ -322,8 +328,9 @@ void CruiseLaw::brake_for(const StopConstraint& halt, const Question& q,
 
 /// Of a path that is kept nothing is known to be free beyond its end, and what is there is no lead.
 void CruiseLaw::brake_for_no_path(const Question& q, const std::optional<Lead>& lead,
+                                  const std::optional<StopConstraint>& halt,
                                   PlannerCommand& command) {
-  const std::optional<double> left_m = path_left_m(q, lead);
+  const std::optional<double> left_m = path_left_m(q, lead, halt);
   const auto braking =
       left_m ? emergency_stop_mps2(q.view.measured.speed_mps, *left_m) : std::nullopt;
   const bool is_blocked = braking && *braking > kMostCommand_mps2;

@@ -69,8 +69,9 @@ class CruiseLaw {
                      const std::optional<StopConstraint>& halt) const;
   std::optional<double> seen_ahead_m(const Question& q) const;
   void brake_for_no_path(const Question& q, const std::optional<Lead>& lead,
-                         PlannerCommand& command);
-  std::optional<double> path_left_m(const Question& q, const std::optional<Lead>& lead) const;
+                         const std::optional<StopConstraint>& halt, PlannerCommand& command);
+  std::optional<double> path_left_m(const Question& q, const std::optional<Lead>& lead,
+                                    const std::optional<StopConstraint>& halt) const;
   double kept_gap_m(double speed_mps) const;
   std::string lead_name(const Lead& lead) const;
   void explain(const Question& q, const SpeedAnswer& answer, PlannerCommand& command) const;

@@ -149,6 +149,9 @@ TEST(Overtaking, WhoStandsForGoodIsPassedAfterThoseWhoCome) {
       EXPECT_EQ(drive.drive.verdict.outcome, Outcome::goal_reached) << drive.drive.verdict.text;
       EXPECT_GE(drive.clearance_m, 0.29);
       EXPECT_GE(drive.least_margin_s, 1.5);
+      for (const auto& row : drive.drive.trajectory.points()) {
+        ASSERT_GE(row.acceleration_mps2, -2.5) << "after " << row.t_s << " s";
+      }
       waits += std::ranges::any_of(drive.drive.cycles, [](const DriveCycle& cycle) {
         return cycle.behaviour == planning::Behaviour::yield &&
                cycle.reason.starts_with("parked is not passed: comes is oncoming");
