@@ -419,4 +419,14 @@ void restore_lateral(pugi::xml_node road) {
   }
 }
 
+void forget_empty_memory(pugi::xml_node parent) {
+  pugi::xml_node memory = find_clip_memory(parent);
+  if (!memory) return;
+  const auto cut = memory.child("cut");
+  const bool is_whole =
+      parent.name() == std::string_view("road") && cut && road_cut(parent).is_whole();
+  if (is_whole && text(parent, "id") == text(cut, "road")) memory.remove_child(cut);
+  if (!memory.first_child()) parent.remove_child(memory);
+}
+
 }  // namespace roadbed::map::edit

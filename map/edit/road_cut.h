@@ -44,4 +44,7 @@ void cut_road(pugi::xml_node road, double from_m, double to_m);
 /// its clip memory keeps them; a whole road has them as they were.
 void restore_lateral(pugi::xml_node road);
 
+/// Takes out a clip memory that holds nothing; of a whole road its `<cut>` is nothing.
+void forget_empty_memory(pugi::xml_node parent);
+
 }  // namespace roadbed::map::edit

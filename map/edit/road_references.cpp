@@ -75,92 +75,6 @@ class Roads {
   std::map<std::string, std::vector<Part>> parts_;
 };
 
-// A new element of the root behind those of its kind, or where they have to stand.
-pugi::xml_node insert_in_root(pugi::xml_node root, pugi::xml_node like) {
-  pugi::xml_node after;
-  for (const char* before :
-       {"header", "road", "controller", "junction", "junctionGroup", "station"}) {
-    for (const auto node : root.children(before)) after = node;
-    if (std::string_view(before) == like.name()) break;
-  }
-  return after ? root.insert_copy_after(like, after) : root.append_copy(like);
-}
-
-void restore_in_root(pugi::xml_node root, const char* name) {
-  const std::vector<pugi::xml_node> all = children(find_clip_memory(root), name);
-  if (all.empty()) return;
-  std::map<std::string, pugi::xml_node> by_id;
-  for (const auto one : root.children(name)) by_id.emplace(text(one, "id"), one);
-  for (const auto kept : all) {
-    const auto found = by_id.find(text(kept, "id"));
-    const pugi::xml_node present = found == by_id.end() ? pugi::xml_node() : found->second;
-    if (present) {
-      root.insert_copy_before(kept, present);
-      root.remove_child(present);
-    } else {
-      insert_in_root(root, kept);
-    }
-    find_clip_memory(root).remove_child(kept);
-  }
-}
-
-// Kept references have stations of the whole road.
-void restore_list(pugi::xml_node road, const RoadCut& cut, const char* list) {
-  pugi::xml_node kept = find_clip_memory(road).child(list);
-  for (const auto reference : kept.children()) {
-    const double s_m = number(reference, "s");
-    if (s_m < cut.from_m || s_m > cut.to_m) continue;
-    pugi::xml_node back = ordered_child(road, list, kRoadOrder).append_copy(reference);
-    if (cut.from_m > 0.0) set_number(back, "s", s_m - cut.from_m);
-  }
-  if (kept) find_clip_memory(road).remove_child(kept);
-}
-
-void restore_position(pugi::xml_node signal) {
-  pugi::xml_node memory = find_clip_memory(signal);
-  const pugi::xml_node kept = memory.child("positionRoad");
-  if (!kept) return;
-  signal.remove_child("positionRoad");
-  signal.insert_copy_before(kept, memory);
-  memory.remove_child(kept);
-  if (!memory.first_child()) signal.remove_child(memory);
-}
-
-void restore_road(pugi::xml_node road) {
-  for (const auto signal : road.child("signals").children("signal")) restore_position(signal);
-  pugi::xml_node memory = find_clip_memory(road);
-  if (!memory) return;
-  if (const auto kept = memory.child("link")) {
-    road.remove_child("link");
-    road.prepend_copy(kept);
-    memory.remove_child(kept);
-  }
-  if (const auto in = memory.child("in")) {
-    set_text(road, "junction", text(in, "junction"));
-    memory.remove_child(in);
-  }
-  for (const char* list : {"railroad", "surface"}) {
-    if (const auto kept = memory.child(list)) {
-      road.remove_child(list);
-      insert_ordered(road, kept, kRoadOrder);
-      memory.remove_child(kept);
-    }
-  }
-  const RoadCut cut = road_cut(road);
-  restore_list(road, cut, "signals");
-  restore_list(road, cut, "objects");
-}
-
-// What remembers nothing is taken out; so is the <cut> of a whole road.
-void forget_empty(pugi::xml_node parent, bool is_road) {
-  pugi::xml_node memory = find_clip_memory(parent);
-  if (!memory) return;
-  const auto cut = memory.child("cut");
-  const bool is_whole = is_road && cut && road_cut(parent).is_whole();
-  if (is_whole && text(parent, "id") == text(cut, "road")) memory.remove_child(cut);
-  if (!memory.first_child()) parent.remove_child(memory);
-}
-
 class Settler {
  public:
   explicit Settler(pugi::xml_node root) : root_(root), roads_(root) {
@@ -186,7 +100,7 @@ class Settler {
     for (const auto& [id, parts] : roads_.all()) {
       for (const Part& part : parts) settle_road(part);
     }
-    forget_empty(root_, false);
+    forget_empty_memory(root_);
     return settled_;
   }
 
@@ -453,7 +367,7 @@ class Settler {
     settle_surface(part);
     settle_references_of(part, "signals", "signalReference", signals_);
     settle_references_of(part, "objects", "objectReference", objects_);
-    forget_empty(part.node, true);
+    forget_empty_memory(part.node);
   }
 
   void settle_road_links(const Part& part) {
@@ -562,14 +476,6 @@ class Settler {
 };
 
 }  // namespace
-
-void restore_references(pugi::xml_node root) {
-  for (const auto road : root.children("road")) restore_road(road);
-  for (const char* kind : {"controller", "junction", "junctionGroup", "station"}) {
-    restore_in_root(root, kind);
-  }
-  forget_empty(root, false);
-}
 
 SettledReferences settle_references(pugi::xml_node root) { return Settler(root).run(); }
 

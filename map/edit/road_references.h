@@ -14,11 +14,6 @@ struct SettledReferences {
   std::size_t links = 0, connections = 0, junctions = 0, controls = 0, references = 0;
 };
 
-/// Puts back what the clip memories of a file hold, as it was in the whole map; it may lead to what
-/// is not there.
-/// @param root  `<OpenDRIVE>`.
-void restore_references(pugi::xml_node root);
-
 /// Makes references fit the roads that are there. They are given as in the whole map; what leads to
 /// a road, an end of a road, a junction or a signal that is not there is taken off, and what it was
 /// is kept in a clip memory: that of the road, or that of the root for junctions and controllers.

@@ -75,11 +75,13 @@ class Planner::Impl {
     const ManeuverHypothesis best = hypotheses_.best(scene, question_at(view, obstacles), passing);
     take(best);
     PlannerCommand command =
-        task_.goal ? speed_.command_of(best, scene) : cruised(best, scene, passing);
+        task_.goal ? speed_.command_of(best, scene) : by_cruise_law(best, scene, passing);
+    const double law_mps2 = command.acceleration_mps2;
+    if (!task_.goal && !best.by_cruise_law) give_way(best, command);
     command.hypotheses = hypotheses_.take_outcomes();
     command.drive = last_plan_;
     guard_.look(best, scene, command);
-    if (!task_.goal) hold_.look(view.t_s, law_mps2_, command);
+    if (!task_.goal) hold_.look(view.t_s, law_mps2, command);
     if (!task_.goal) look_for_detour(view, passing.merging, command);
     view.speed_controller.sent(command.acceleration_mps2);
     last_command_mps2_ = command.acceleration_mps2;
@@ -261,19 +263,16 @@ class Planner::Impl {
     last_plan_ = best.answer.plan;
   }
 
-  PlannerCommand cruised(const ManeuverHypothesis& best, const PlanningScene& scene,
-                         const PassingDecision& passing) {
-    PlannerCommand command = cruise_.command({.view = scene.view,
-                                              .on = lines_.driven(),
-                                              .traffic = traffic_,
-                                              .passing = passing,
-                                              .maneuver = best.maneuver,
-                                              .no_lead = who_crosses_in_time(best, scene),
-                                              .halt = scene.halt,
-                                              .walkers = scene.walkers});
-    law_mps2_ = command.acceleration_mps2;
-    if (!best.by_cruise_law) give_way(best, command);
-    return command;
+  PlannerCommand by_cruise_law(const ManeuverHypothesis& best, const PlanningScene& scene,
+                               const PassingDecision& passing) {
+    return cruise_.command({.view = scene.view,
+                            .on = lines_.driven(),
+                            .traffic = traffic_,
+                            .passing = passing,
+                            .maneuver = best.maneuver,
+                            .no_lead = who_crosses_in_time(best, scene),
+                            .halt = scene.halt,
+                            .walkers = scene.walkers});
   }
 
   /// Not those who are too near already.
@@ -370,7 +369,6 @@ class Planner::Impl {
   MissedLaneChange missed_change_;
   CommandGuard guard_;
   CommandHold hold_;
-  double law_mps2_ = 0.0;  ///< with nobody to give way to
   double last_command_mps2_ = 0.0, last_set_speed_mps_ = 0.0;
   std::vector<SpeedState> last_plan_;
 };

@@ -128,6 +128,13 @@ std::optional<Overtaking::State> Overtaking::past(State state, const MoverOnLine
   return state;
 }
 
+/// Back in the lane after that.
+Overtaking::State Overtaking::back_from(const State& past) const {
+  State back = past;
+  while (back.after_s < past.after_s + kBackInLane_s) back = step(back);
+  return back;
+}
+
 /// Whether somebody drives neither where the vehicle overtakes nor in its lane, or is past already,
 /// or follows in its lane.
 bool Overtaking::is_no_matter(const MoverOnLine& mover, const State& now, double pass_at_m) const {
@@ -164,8 +171,7 @@ std::optional<std::string> Overtaking::why_not(const State& from, const MoverOnL
                                                const OncomingLaneSegment& stretch) const {
   const std::optional<State> past = this->past(from, lead);
   if (!past) return fmt::format("it would take more than {:.0f} s", kLongest_s);
-  State back = *past;
-  while (back.after_s < past->after_s + kBackInLane_s) back = step(back);
+  const State back = back_from(*past);
   const double to_end_m = std::min(stretch.to_s_m, task_.line.goal_s_m()) - back.s_m;
   if (to_end_m < kBeforeEnd_m) {
     return fmt::format("it would end {:.0f} m past where it has to", kBeforeEnd_m - to_end_m);
@@ -213,8 +219,7 @@ std::optional<Overtaking::Decision> Overtaking::waits_for_oncoming(
   const State now{0.0, view.at.s_m, view.speed_mps};
   const std::optional<State> past = this->past(now, *next);
   if (has_begun || has_room || !past) return std::nullopt;
-  State back = *past;
-  while (back.after_s < past->after_s + kBackInLane_s) back = step(back);
+  const State back = back_from(*past);
   std::vector<MoverOnLine> oncoming;
   std::ranges::copy_if(movers, std::back_inserter(oncoming),
                        [](const MoverOnLine& mover) { return mover.speed_mps < -kComes_mps; });

@@ -90,6 +90,7 @@ class Overtaking {
                      const std::vector<MoverOnLine>& movers,
                      const OncomingLaneSegment& stretch) const;
   std::optional<State> past(State state, const MoverOnLine& lead) const;
+  State back_from(const State& past) const;
   State beside_rear(State state, const MoverOnLine& lead) const;
   bool is_no_matter(const MoverOnLine& mover, const State& now, double pass_at_m) const;
   std::optional<MoverOnLine> hidden_oncoming(const ViewOnLine& view,

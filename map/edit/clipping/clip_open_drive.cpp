@@ -11,6 +11,7 @@
 #include "roadbed/map/edit/clipping/clip.h"
 #include "roadbed/map/edit/clipping/inside_stretches.h"
 #include "roadbed/map/edit/new_ids.h"
+#include "roadbed/map/edit/restored_references.h"
 #include "roadbed/map/edit/road_cut.h"
 #include "roadbed/map/edit/road_references.h"
 #include "roadbed/map/edit/xml_edit.h"

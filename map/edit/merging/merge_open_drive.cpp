@@ -17,6 +17,7 @@
 #include "roadbed/map/edit/merging/road_join.h"
 #include "roadbed/map/edit/new_ids.h"
 #include "roadbed/map/edit/plan_cut.h"
+#include "roadbed/map/edit/restored_references.h"
 #include "roadbed/map/edit/road_cut.h"
 #include "roadbed/map/edit/road_references.h"
 #include "roadbed/map/edit/xml_edit.h"
