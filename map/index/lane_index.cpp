@@ -66,6 +66,12 @@ std::vector<LaneMatch> LaneIndex::near(const Eigen::Vector2d& point_in_map,
   return scratch.found;
 }
 
+bool LaneIndex::is_any_near(const Eigen::Vector2d& point_in_map, const LaneQuery& query) const {
+  if (!is_searchable(point_in_map, query)) return false;
+  static thread_local lane_index::Scratch scratch;
+  return lane_index::is_any_near(data_, level_starts_, query, point_in_map, scratch);
+}
+
 LaneMatches LaneIndex::near(std::span<const Eigen::Vector2d> points_in_map,
                             const LaneQuery& query) const {
   LaneMatches matches;

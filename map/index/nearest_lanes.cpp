@@ -119,14 +119,9 @@ class Search {
 
   /// Leaves what it finds in scratch.found.
   void run() {
-    visit_around();
-    if (count_inside() < query_.count) {
-      for (const Cell* cell : scratch_.around) measure(*cell);
-      visit_beside();
-    }
+    collect();
     for (const Candidate& candidate : scratch_.candidates) {
-      if (candidate.squared_m2 <= bound_m2_ && candidate.squared_m2 < kNoBound_m)
-        scratch_.found.push_back(match(candidate));
+      if (is_within(candidate)) scratch_.found.push_back(match(candidate));
     }
     std::sort(scratch_.found.begin(), scratch_.found.end(), [](const auto& a, const auto& b) {
       const auto key = [](const LaneMatch& m) {
@@ -137,7 +132,25 @@ class Search {
     if (scratch_.found.size() > query_.count) scratch_.found.resize(query_.count);
   }
 
+  /// Whether run() would find any lane.
+  bool finds_any() {
+    collect();
+    return std::ranges::any_of(scratch_.candidates,
+                               [this](const Candidate& found) { return is_within(found); });
+  }
+
  private:
+  void collect() {
+    visit_around();
+    if (count_inside() >= query_.count) return;
+    for (const Cell* cell : scratch_.around) measure(*cell);
+    visit_beside();
+  }
+
+  bool is_within(const Candidate& candidate) const {
+    return candidate.squared_m2 <= bound_m2_ && candidate.squared_m2 < kNoBound_m;
+  }
+
   void limit(double squared_m2) {
     bound_m2_ = squared_m2;
     // Never infinite: boxes of nothing are infinitely far.
@@ -363,6 +376,11 @@ void find_nearest(const Data& data, const std::vector<std::uint64_t>& levels,
                   const LaneQuery& query, const Eigen::Vector2d& point, double at_most_m,
                   Scratch& scratch) {
   Search(data, levels, query, point, at_most_m, scratch).run();
+}
+
+bool is_any_near(const Data& data, const std::vector<std::uint64_t>& levels, const LaneQuery& query,
+                 const Eigen::Vector2d& point, Scratch& scratch) {
+  return Search(data, levels, query, point, kNoBound_m, scratch).finds_any();
 }
 
 }  // namespace roadbed::map::index::lane_index

@@ -41,4 +41,8 @@ void find_nearest(const Data& data, const std::vector<std::uint64_t>& levels,
                   const LaneQuery& query, const Eigen::Vector2d& point, double at_most_m,
                   Scratch& scratch);
 
+/// Whether `find_nearest` would find any lane, without its place.
+bool is_any_near(const Data& data, const std::vector<std::uint64_t>& levels, const LaneQuery& query,
+                 const Eigen::Vector2d& point, Scratch& scratch);
+
 }  // namespace roadbed::map::index::lane_index

@@ -146,9 +146,8 @@ LaneMatches RoadMap::locate(std::span<const Eigen::Vector2d> points_in_map, doub
 }
 
 bool RoadMap::on_surface(const Eigen::Vector2d& point_in_map, double margin_m) const {
-  return !index_->lanes
-              .near(point_in_map, {.radius_m = margin_m, .count = 1, .types = LaneTypes::surface()})
-              .empty();
+  return index_->lanes.is_any_near(
+      point_in_map, {.radius_m = margin_m, .count = 1, .types = LaneTypes::surface()});
 }
 
 }  // namespace roadbed::map::model

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numeric>
 #include <optional>
+#include <ranges>
 #include <unordered_set>
 #include <utility>
 
@@ -142,49 +143,91 @@ class DriveSearch {
     return std::nullopt;
   }
 
+  /// What a command makes of the speed in each step of a layer, whatever the steering.
+  struct Along {
+    double speed_mps, acceleration_mps2, mean_mps, square, most_per_m;
+  };
+  using AlongLayer = std::array<Along, kStepsInLayer>;
+
   std::vector<DriveNode> children_of(std::size_t first, std::size_t end) const {
     std::vector<DriveNode> children;
     children.reserve((end - first) * kLateralShares.size() * kCommands_mps2.size());
     for (std::size_t i = first; i < end; ++i) {
+      std::array<AlongLayer, kCommands_mps2.size()> along;
+      for (std::size_t k = 0; k < along.size(); ++k) {
+        along[k] = along_layer(nodes_[i].end(), kCommands_mps2[k]);
+      }
+      const double heading_rad = nodes_[i].end().pose.heading_rad;
+      const Eigen::Vector2d ahead(std::cos(heading_rad), std::sin(heading_rad));
       for (const double share : kLateralShares) {
-        for (const double command : kCommands_mps2) add_child(i, share, command, children);
+        for (const AlongLayer& speeds : along) add_child(i, share, speeds, ahead, children);
       }
     }
     return children;
   }
 
-  void add_child(std::size_t parent, double share, double command_mps2,
+  AlongLayer along_layer(const DriveState& from, double command_mps2) const {
+    const double h = kDriveStep_s;
+    double speed_mps = from.speed_mps, lagging = from.acceleration_mps2 - command_mps2;
+    AlongLayer layer;
+    for (Along& step : layer) {
+      const double before_mps = speed_mps;
+      const double gained = lagging * options_.actuator_lag_s / h * (1.0 - decay_);
+      speed_mps = std::max(0.0, before_mps + h * (command_mps2 + gained));
+      lagging *= decay_;
+      const double square = std::max(0.01, speed_mps * speed_mps);
+      const double limit = options_.max_lateral_acceleration_mps2 / square;
+      step = {.speed_mps = speed_mps,
+              .acceleration_mps2 = command_mps2 + lagging,
+              .mean_mps = 0.5 * (before_mps + speed_mps),
+              .square = square,
+              .most_per_m = std::min(most_per_m_, limit)};
+    }
+    return layer;
+  }
+
+  void add_child(std::size_t parent, double share, const AlongLayer& along, Eigen::Vector2d ahead,
                  std::vector<DriveNode>& children) const {
     DriveNode child{.states = {}, .parent = static_cast<int>(parent)};
-    DriveState state = nodes_[parent].end();
-    for (DriveState& to : child.states) {
-      if (!follow(share, command_mps2, state)) return;
-      to = state;
+    const DriveState* from = &nodes_[parent].end();
+    for (std::size_t k = 0; k < along.size(); ++k) {
+      if (!follow(share, along[k], *from, ahead, child.states[k])) return;
+      from = &child.states[k];
     }
     children.push_back(child);
   }
 
   /// One step, in which the curvature changes evenly; whether the vehicle can drive that.
-  bool follow(double share, double command_mps2, DriveState& state) const {
-    const double h = kDriveStep_s, from_mps = state.speed_mps, from = state.curvature_per_m;
-    const double lagging = state.acceleration_mps2 - command_mps2;
-    state.acceleration_mps2 = command_mps2 + lagging * decay_;
-    const double mean_mps2 = command_mps2 + lagging * options_.actuator_lag_s / h * (1.0 - decay_);
-    state.speed_mps = std::max(0.0, from_mps + h * mean_mps2);
-    const double square = std::max(0.01, state.speed_mps * state.speed_mps);
-    const double limit = options_.max_lateral_acceleration_mps2;
-    const double to = share * std::min(most_per_m_, limit / square);
-    state.curvature_per_m = std::clamp(to, from - turn_per_m_, from + turn_per_m_);
-    const double speed = 0.5 * (from_mps + state.speed_mps);
-    const double curvature = 0.5 * (from + state.curvature_per_m);
-    const double most =
-        std::max(speed * speed * std::abs(curvature), square * std::abs(state.curvature_per_m));
-    if (most > limit + kRounding_mps2) return false;
-    const double turned = h * speed * curvature, middle_rad = state.pose.heading_rad + 0.5 * turned;
-    state.pose.x_m += h * speed * std::cos(middle_rad);
-    state.pose.y_m += h * speed * std::sin(middle_rad);
-    state.pose.heading_rad += turned;
+  /// @param ahead  the heading as a direction; turned with it
+  bool follow(double share, const Along& along, const DriveState& from, Eigen::Vector2d& ahead,
+              DriveState& to) const {
+    const double target_per_m = share * along.most_per_m;
+    to.curvature_per_m = std::clamp(target_per_m, from.curvature_per_m - turn_per_m_,
+                                    from.curvature_per_m + turn_per_m_);
+    const double curvature = 0.5 * (from.curvature_per_m + to.curvature_per_m);
+    const double most = std::max(along.mean_mps * along.mean_mps * std::abs(curvature),
+                                 along.square * std::abs(to.curvature_per_m));
+    if (most > options_.max_lateral_acceleration_mps2 + kRounding_mps2) return false;
+    const double way_m = kDriveStep_s * along.mean_mps;
+    const Eigen::Vector2d middle = turned(ahead, 0.5 * way_m * curvature);
+    to.pose.x_m = from.pose.x_m + way_m * middle.x();
+    to.pose.y_m = from.pose.y_m + way_m * middle.y();
+    to.pose.heading_rad = from.pose.heading_rad + way_m * curvature;
+    to.speed_mps = along.speed_mps;
+    to.acceleration_mps2 = along.acceleration_mps2;
+    ahead = turned(middle, 0.5 * way_m * curvature);
     return true;
+  }
+
+  /// By a small angle, to 1e-12: a step turns by less than 0.2 rad.
+  static Eigen::Vector2d turned(const Eigen::Vector2d& direction, double angle_rad) {
+    const double square = angle_rad * angle_rad;
+    const double cosine =
+        1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0)));
+    const double sine =
+        angle_rad * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)));
+    return {cosine * direction.x() - sine * direction.y(),
+            sine * direction.x() + cosine * direction.y()};
   }
 
   std::uint64_t cell_of(const DriveState& state) const {
@@ -205,13 +248,17 @@ class DriveSearch {
     return cell;
   }
 
+  /// What is cheapest to find out, and likeliest to fail, comes first.
   bool is_free(const DriveNode& node, int step) const {
-    for (int i = 0; i < kStepsInLayer; ++i) {
-      const geometry::Rectangle body =
-          geometry::body_at(node.states[static_cast<std::size_t>(i)].pose, q_.vehicle);
-      if (touches(body, step + i + 1) || !is_on_surface(body)) return false;
+    std::array<geometry::Rectangle, kStepsInLayer> bodies;
+    for (int i = kStepsInLayer; i-- > 0;) {
+      const auto at = static_cast<std::size_t>(i);
+      bodies[at] = geometry::body_at(node.states[at].pose, q_.vehicle);
+      if (touches(bodies[at], step + i + 1)) return false;
     }
-    return true;
+    return std::ranges::all_of(bodies | std::views::reverse, [&](const geometry::Rectangle& body) {
+      return is_on_surface(body);
+    });
   }
 
   bool touches(const geometry::Rectangle& body, int step) const {

@@ -70,6 +70,7 @@ void compare_with_brute_force(const RoadMap& road_map, int count) {
   for (const Eigen::Vector2d& point : points_near_lanes(road_map, count, 30.0)) {
     const auto expected = by_brute_force(road_map, point, 20.0);
     expect_same_lanes(road_map.index().lanes.near(point, {.radius_m = 20.0}), expected);
+    EXPECT_EQ(road_map.index().lanes.is_any_near(point, {.radius_m = 20.0}), !expected.empty());
     const auto nearest = road_map.index().lanes.near(point, {.radius_m = 20.0, .count = 1});
     ASSERT_EQ(nearest.size(), std::min<std::size_t>(1, expected.size()));
     if (nearest.empty()) continue;
