@@ -32,6 +32,16 @@ constexpr std::array<RiskLevel, 2> kOnRoute{
       .speed = {.least_mps2 = -geometry::kLongitudinal.max_braking_mps2},
       .is_emergency = true}}};
 
+/// Where nothing within the usual limits reaches the goal in time: those of tyres on a dry road.
+/// What is searched for leaves room for the path through it, and that for the wheels to keep to it.
+constexpr RiskLevel kAtTyreLimit{.margin_m = 0.1,
+                                 .speed = kHardest,
+                                 .is_emergency = true,
+                                 .bends = {.max_lateral_acceleration_mps2 = 9.0},
+                                 .most_lateral_mps2 = 10.0};
+constexpr DriveSearchOptions kSearchAtTyreLimit{.max_lateral_acceleration_mps2 = 8.0};
+constexpr double kUsualLimitsFor_s = 0.2;  // of searching in vain
+
 double ends_beside_m(const LateralReplanner::Proposal& proposal) {
   return std::abs(proposal.plan.chosen->end_d_m);
 }
@@ -66,13 +76,25 @@ void Hypotheses::find_drive(const PlanningScene& scene,
                             const LateralReplanner::Question& question) {
   if (scene.view.t_s < next_search_s_) return;
   next_search_s_ = scene.view.t_s + kSearchEvery_s;
+  const double t_s = scene.view.t_s;
+  const bool at_tyre_limit = vain_since_s_ && t_s - *vain_since_s_ >= kUsualLimitsFor_s;
+  const DriveSearchOptions options = at_tyre_limit ? kSearchAtTyreLimit : DriveSearchOptions{};
+  if (task_.goal->latest_s().value_or(t_s) - t_s > options.longest_s) return;
   const std::vector<VehicleState> drive = search_drive({.vehicle = vehicle_,
                                                         .road_map = task_.road_map,
                                                         .bodies = scene.bodies,
                                                         .goal = *task_.goal,
                                                         .start = scene.view.measured,
-                                                        .now_s = scene.view.t_s});
-  if (drive.empty()) return;
+                                                        .now_s = t_s},
+                                                       options);
+  if (drive.empty()) {
+    const SpeedSearchAnswer& otherwise = best_of_all().answer;
+    const bool is_vain = otherwise.misses_goal || !otherwise.is_free;
+    if (is_vain && !vain_since_s_) vain_since_s_ = t_s;
+    return;
+  }
+  drives_at_tyre_limit_ = at_tyre_limit;
+  if (!at_tyre_limit) vain_since_s_.reset();
   GoalLine* nearest = nullptr;
   std::optional<LateralReplanner::Proposal> along;
   for (GoalLine& line : lines_.all()) {
@@ -93,6 +115,9 @@ void Hypotheses::add_drive(const PlanningScene& scene, const LateralReplanner::Q
   for (const RiskLevel& level : kInTime) {
     if (!level.is_emergency || is_good(all_.back())) continue;
     speed_.search(scene, level, all_.back());
+  }
+  if (drives_at_tyre_limit_ && !is_good(all_.back())) {
+    speed_.search(scene, kAtTyreLimit, all_.back());
   }
   if (is_better(all_.back(), best_of_all())) best_ = all_.size() - 1;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -47,6 +48,8 @@ class Hypotheses {
   GoalLines& lines_;
   const HypothesisSpeed& speed_;
   double next_search_s_ = 0.0;
+  std::optional<double> vain_since_s_;   ///< a drive within the usual limits was searched for
+  bool drives_at_tyre_limit_ = false;    ///< the one that was found last
   std::vector<ManeuverHypothesis> all_;  ///< of this cycle
   std::size_t best_ = 0;
   std::vector<HypothesisOutcome> outcomes_;

@@ -28,7 +28,11 @@ double stopping_m(const PlannerView& view) {
   return speed * usual.actuator_lag_s - 0.5 * speed * speed / usual.least_mps2;
 }
 
-std::string why_emergency(double command_mps2) {
+std::string why_emergency(const RiskLevel& level, double command_mps2) {
+  if (level.most_lateral_mps2 > kUsualLateral_mps2) {
+    return fmt::format("only with more than {:.1f} m/s² to the side the goal is reached in time",
+                       kUsualLateral_mps2);
+  }
   if (std::abs(command_mps2) > SpeedSearchOptions{}.most_mps2) {
     return fmt::format("¼ g is not enough: {:.1f} m/s² asked for", command_mps2);
   }
@@ -180,6 +184,7 @@ PlannerCommand HypothesisSpeed::command_of(const ManeuverHypothesis& best,
   PlannerCommand command;
   command.acceleration_mps2 = first_command_mps2(best);
   command.set_speed_mps = best.answer.plan.size() > 1 ? best.answer.plan[1].speed_mps : 0.0;
+  command.most_lateral_mps2 = best.risk_level->most_lateral_mps2;
   command.lead = lead_on(*best.occupancy, scene);
   explain(best, scene, command);
   return command;
@@ -194,7 +199,8 @@ void HypothesisSpeed::explain(const ManeuverHypothesis& best, const PlanningScen
     command.reason = fmt::format("no way on is free: {:.1f} s at best", best.answer.free_until_s);
   } else if (best.risk_level->is_emergency) {
     command.behaviour = Behaviour::emergency;
-    command.reason = why_emergency(command.acceleration_mps2);
+    command.reason = why_emergency(*best.risk_level, command.acceleration_mps2);
+    command.is_news = best.risk_level->most_lateral_mps2 > kUsualLateral_mps2;
   } else if (goal_is_past(t_s) || !has_goal) {
     command.behaviour = Behaviour::stop;
     command.reason = has_goal ? "the goal's time is over" : "no goal is asked for";

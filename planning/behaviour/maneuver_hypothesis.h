@@ -11,6 +11,7 @@
 #include "roadbed/planning/behaviour/goal_lines.h"
 #include "roadbed/planning/behaviour/hypothesis_outcome.h"
 #include "roadbed/planning/behaviour/lateral_replanner.h"
+#include "roadbed/planning/behaviour/planner_types.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/planning/speed/path_profile.h"
@@ -21,12 +22,13 @@
 
 namespace roadbed::planning::inline behaviour {
 
-/// How much risk is taken: safety margin to obstacles, braking, and speed in bends.
+/// How much risk is taken: safety margin to obstacles, braking, speed in bends, and steering.
 struct RiskLevel {
   double margin_m;
   SpeedSearchOptions speed;
   bool is_emergency;
   BendLimits bends = {};
+  double most_lateral_mps2 = kUsualLateral_mps2;  ///< that the wheels may be turned for
 };
 
 /// A path to ask the lateral planner for.

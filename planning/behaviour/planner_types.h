@@ -25,10 +25,13 @@ struct PlannerView {
   bool explains = false;  ///< keep what became of every candidate (LateralReplanner::explained())
 };
 
+inline constexpr double kUsualLateral_mps2 = 3.9;  ///< that the wheels are turned for
+
 /// What it wants until the next cycle.
 struct PlannerCommand {
   double acceleration_mps2 = 0.0;  ///< desired, to the actuator
   double set_speed_mps = 0.0;
+  double most_lateral_mps2 = kUsualLateral_mps2;  ///< that the wheels may be turned for
   Behaviour behaviour = Behaviour::cruise;
   std::string reason;
   std::optional<DriveLead> lead;

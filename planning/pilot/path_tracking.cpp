@@ -22,8 +22,8 @@ control::TrackingError tracking_error(const PlannedPath& path,
 }
 
 double tracking_steering_rad(const control::TrackingError& error, double speed_mps,
-                             const geometry::VehicleShape& vehicle) {
-  const double most = most_steering_rad(speed_mps, vehicle);
+                             const geometry::VehicleShape& vehicle, double lateral_mps2) {
+  const double most = most_steering_rad(speed_mps, vehicle, lateral_mps2);
   return std::clamp(control::stanley_steering_rad(error, speed_mps, vehicle), -most, most);
 }
 

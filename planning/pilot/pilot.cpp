@@ -221,7 +221,8 @@ class Pilot::Impl {
         .trajectory = planned_trajectory({path, replanner.s_m(), stops_by_s_m(path, view.t_s)},
                                          view.t_s, view.ego, decision_, setup_.vehicle),
         .acceleration_mps2 = decision_.acceleration_mps2,
-        .steering_rad = tracking_steering_rad(error, view.ego.speed_mps, setup_.vehicle),
+        .steering_rad = tracking_steering_rad(error, view.ego.speed_mps, setup_.vehicle,
+                                              decision_.most_lateral_mps2),
         .decision = decision_};
     const double missed_m = replanner.s_m() - task_->line.goal_s_m();
     answer.is_at_goal = view.ego.speed_mps <= 0.0 && std::abs(missed_m) <= kAtGoal_m;

@@ -17,7 +17,7 @@ shares no code with roadbed:
 With --predict others are measured, tracked and foreseen, not known. Of those that fail a line tells whether any drive can succeed, see solvable.py. Prints a table, and
 how many succeed only because they see the traffic. Exit status 1 if a drive collides of which
 roadbed says that it does not, ends in an exception, passes 4 m/s² of lateral acceleration in a
-success, or a solution does not load."""
+success without saying so, or a solution does not load."""
 import copy
 import csv
 import json
@@ -133,6 +133,7 @@ def judge(scenario_file, folder):
         "steps": len(states),
         "a_lat": float(np.max(np.abs(speed[1:] * turned / step_s), initial=0.0)),
         "a_lon": float(np.max(np.abs(np.diff(speed)) / step_s, initial=0.0)),
+        "says_beyond": any("m/s² to the side" in event["text"] for event in metrics["events"]),
         "solution": bool(same),
     }
 
@@ -205,10 +206,11 @@ def print_table(names, results):
           f"({sum(r['at_fault'] for r in judged)} of them at fault), {len(results) - len(judged)} without a "
           f"drive; {sum(not r['blind'] for r in good)} of those that reach it need to see the traffic; "
           f"largest lateral acceleration of a success "
-          f"{max((r['a_lat'] for r in good), default=0.0):.2f} m/s²")
+          f"{max((r['a_lat'] for r in good), default=0.0):.2f} m/s²; "
+          f"{sum(r['a_lat'] > MOST_LATERAL_MPS2 for r in good)} of them beyond {MOST_LATERAL_MPS2} m/s²")
     agrees = all(r["solution"] and (r["status"] == 1 or not r["collision"]) for r in judged)
     return agrees and all(
-        r["a_lat"] <= MOST_LATERAL_MPS2 for r in good) and all(
+        r["a_lat"] <= MOST_LATERAL_MPS2 or r["says_beyond"] for r in good) and all(
         r["status"] in (0, 1) for r in results)
 
 

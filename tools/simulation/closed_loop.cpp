@@ -288,7 +288,8 @@ class ClosedLoop {
       command_.acceleration_mps2 =
           follower_->acceleration_mps2(t_s(), measured.map_from_vehicle, speed_mps);
     }
-    const double wanted = planning::tracking_steering_rad(error, speed_mps, scenario_.vehicle);
+    const double wanted = planning::tracking_steering_rad(error, speed_mps, scenario_.vehicle,
+                                                          command_.most_lateral_mps2);
     truth_.acceleration_mps2 = acceleration_after_step();
     const control::SingleTrackState moved =
         control::step({.pose = truth_.map_from_vehicle,

@@ -60,7 +60,8 @@ std::vector<DriveEvent> events_of(const DriveCycle& cycle, const DriveCycle* las
       (!last || last->behaviour != planning::Behaviour::emergency)) {
     log(EventLevel::warning, "emergency: " + cycle.reason);
   }
-  if (cycle.is_news) log(EventLevel::warning, cycle.reason);
+  const bool was_said = last && last->is_news && last->reason == cycle.reason;
+  if (cycle.is_news && !was_said) log(EventLevel::warning, cycle.reason);
   const std::string lead = cycle.lead ? cycle.lead->id : "";
   const std::string last_lead = last && last->lead ? last->lead->id : "";
   if (lead != last_lead) {

@@ -41,9 +41,10 @@ std::string refusal_of(const std::string& bytes) {
   return "accepted";
 }
 
-/// A road of 4 m eastwards that ends at `end_x_m`, the ego's centre at x = 5 m at a speed, and a
-/// goal state.
-std::string road_that_ends(double end_x_m, double speed_mps, const std::string& goal) {
+/// A road eastwards that ends at `end_x_m`, the ego's centre in its middle at x = 5 m at a speed,
+/// and a goal state.
+std::string road_that_ends(double end_x_m, double speed_mps, const std::string& goal,
+                           double half_width_m = 2.0) {
   const auto bound = [&](const char* name, double y_m) {
     return fmt::format(
         "<{0}><point><x>0</x><y>{1}</y></point><point><x>{2}</x><y>{1}</y></point></{0}>", name,
@@ -51,7 +52,7 @@ std::string road_that_ends(double end_x_m, double speed_mps, const std::string& 
   };
   return "<?xml version=\"1.0\"?><commonRoad timeStepSize=\"0.1\" commonRoadVersion=\"2020a\" "
          "benchmarkID=\"ZAM_End-1_1_T-1\"><lanelet id=\"1\">" +
-         bound("leftBound", 2.0) + bound("rightBound", -2.0) +
+         bound("leftBound", half_width_m) + bound("rightBound", -half_width_m) +
          fmt::format(
              "<laneletType>urban</laneletType></lanelet><planningProblem id=\"9\">"
              "<initialState><position><point><x>5</x><y>0</y></point></position>"
@@ -85,6 +86,50 @@ TEST(CommonRoadWorld, GoalThatIsReachedOffTheRoadDoesNotCount) {
   EXPECT_NEAR(driven.samples.back().off_road_m,
               last.x_m + geometry::VehicleShape{}.front_m() - 18.0, 5e-3);
   EXPECT_GT(driven.samples.back().off_road_m, 1.0);
+}
+
+/// At 18 m/s on a road of 20 m, so far to the left, and straight on again, after 2 s.
+Drive driven_aside(double aside_m) {
+  CommonRoadDrive problem = problem_of(road_that_ends(
+      200.0, 18.0,
+      fmt::format("<position><rectangle><length>20</length><width>2</width><orientation>0"
+                  "</orientation><center><x>41</x><y>{}</y></center></rectangle></position>"
+                  "<orientation><intervalStart>-0.15</intervalStart><intervalEnd>0.15"
+                  "</intervalEnd></orientation>",
+                  aside_m) +
+          within_steps(19, 21),
+      10.0));
+  return drive(problem.scenario, problem.world);
+}
+
+double most_lateral_mps2(const Drive& driven) {
+  double most = 0.0;
+  for (const geometry::TrajectoryPoint& point : driven.trajectory.points()) {
+    most = std::max(most, point.speed_mps * point.speed_mps * std::abs(point.curvature_per_m));
+  }
+  return most;
+}
+
+bool says(const Drive& driven, const std::string& text) {
+  return std::ranges::any_of(driven.events, [&](const DriveEvent& event) {
+    return event.text.find(text) != std::string::npos;
+  });
+}
+
+TEST(CommonRoadWorld, GoalWithinUsualSteeringIsReachedWithinIt) {
+  const Drive driven = driven_aside(4.5);
+  EXPECT_EQ(driven.verdict.outcome, Outcome::goal_reached) << driven.verdict.text;
+  EXPECT_LE(most_lateral_mps2(driven), 3.95);
+  EXPECT_FALSE(says(driven, "m/s² to the side"));
+}
+
+// 6.5 m to the side and back in 2 s ask for 6.5 m/s² at least, in bends without a way into them.
+TEST(CommonRoadWorld, GoalBeyondUsualSteeringIsReachedAndSaidToBe) {
+  const Drive driven = driven_aside(6.5);
+  EXPECT_EQ(driven.verdict.outcome, Outcome::goal_reached) << driven.verdict.text;
+  EXPECT_GT(most_lateral_mps2(driven), 5.5);
+  EXPECT_LE(most_lateral_mps2(driven), 10.05);
+  EXPECT_TRUE(says(driven, "only with more than 3.9 m/s² to the side"));
 }
 
 TEST(CommonRoadWorld, StartIsTheRearAxleOfACentreThatTheFileGives) {
