@@ -53,6 +53,15 @@ bool is_same(std::string_view a, std::string_view b) {
 XmlScanner::XmlScanner(std::string_view text, std::string file, std::size_t from)
     : text_(text), file_(std::move(file)), at_(from), offset_(from) {}
 
+XmlScanner::XmlScanner(std::string_view text, std::string file, const Stretch& stretch)
+    : text_(text.substr(0, stretch.to)),
+      file_(std::move(file)),
+      at_(stretch.from),
+      offset_(stretch.from),
+      is_stretch_(stretch.to < text.size()) {
+  if (!stretch.inside.empty()) open_.push_back(stretch.inside);
+}
+
 void XmlScanner::refuse(const std::string& reason) const {
   const std::size_t end = std::min(at_, text_.size());
   const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<long>(end), '\n');
@@ -235,6 +244,8 @@ XmlScanner::Event XmlScanner::next() {
   }
   if (is_done_) return Event::done;
   if (!find_tag()) {
+    is_done_ = is_stretch_ && open_.size() == 1;
+    if (is_done_) return Event::done;
     refuse(open_.empty() ? "no element" : fmt::format("it ends inside <{}>", open_.back()));
   }
   return here() == '/' ? read_end() : read_start();

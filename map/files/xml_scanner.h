@@ -27,6 +27,17 @@ class XmlScanner {
   /// @param from  where to begin: at the start tag of an element, to read that element alone.
   XmlScanner(std::string_view text, std::string file, std::size_t from = 0);
 
+  /// A stretch of a text.
+  struct Stretch {
+    std::size_t from, to;
+    std::string_view inside;  ///< the element that it is in the midst of; empty: begins in it
+  };
+
+  /// Reads whole elements inside the text's first element; `done` comes behind the last of them, or
+  /// with the first element's end. Stretches that lie end to end and can all be read hold the same
+  /// elements as the text.
+  XmlScanner(std::string_view text, std::string file, const Stretch& stretch);
+
   /// @throws InputError with the line if the text is not well-formed, is nested deeper than 1,000
   ///         elements or has an element of more than 10,000 attributes.
   Event next();
@@ -79,6 +90,7 @@ class XmlScanner {
   std::vector<std::string_view> open_;
   bool is_empty_ = false;  // the element that starts here ends here, too
   bool is_done_ = false;
+  bool is_stretch_ = false;  // ends where the text does not
   std::deque<std::string> decoded_;
 };
 

@@ -26,6 +26,11 @@ struct BuiltLanes {
   std::vector<std::optional<LaneId>> lane_of_relation;  ///< one per relation
 };
 
+struct LinkedLanes {
+  std::vector<LaneLinks> links;  ///< one per lane
+  std::vector<ImportDiagnostic> remarks;
+};
+
 /// All lanelets as lanes; one without two usable borders is left out and remarked.
 /// @param threads  that may be used.
 /// @throws InputError if the borders have more points than a file of this size can mean, or if no
@@ -40,8 +45,9 @@ std::uint32_t last_node(const Document& document, const Border& border);
 /// it begins with the two nodes that the other one ends with and somebody may use both; lanes are
 /// neighbours if they share a border way. Of several neighbours on one side, that of the same
 /// direction and the same users comes first, then the one that comes first in the file. Where more
-/// than 64 lanes meet, the rest is left out and remarked.
-std::vector<LaneLinks> link_lanes(Document& document, const BuiltLanes& built);
+/// than 64 lanes meet, the rest is left out and remarked. Looks neither at speed limits nor at
+/// which ways are used, so that these may be found meanwhile.
+LinkedLanes link_lanes(const Document& document, const BuiltLanes& built);
 
 /// Regulatory elements of every kind, with what they refer to; those nobody here knows are kept
 /// like all others. Adds the signs, lights and stop lines that they name, and the limits of

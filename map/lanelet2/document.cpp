@@ -46,8 +46,7 @@ std::optional<double> plain_decimal(std::string_view text) {
 Document::Document(std::string bytes, std::string file)
     : utf8(std::make_unique<const std::string>(in_utf8(std::move(bytes)))),
       text(*utf8),
-      name(std::move(file)),
-      scanner(text, name) {}
+      name(std::move(file)) {}
 
 std::vector<Eigen::Vector3d> Document::points(const Way& way) const {
   std::vector<Eigen::Vector3d> found;

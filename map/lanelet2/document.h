@@ -71,7 +71,7 @@ struct Document {
   std::unique_ptr<const std::string> utf8;
   std::string_view text;
   std::string name;
-  XmlScanner scanner;  ///< holds what it decoded
+  std::vector<XmlScanner> scanners;  ///< hold what they decoded
   std::vector<Node> nodes;
   std::vector<NodePlace> places;  ///< of the nodes, as they say it
   std::vector<Way> ways;

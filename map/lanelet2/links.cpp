@@ -44,7 +44,7 @@ class LanesBy {
 
 class Linker {
  public:
-  Linker(Document& document, const BuiltLanes& built)
+  Linker(const Document& document, const BuiltLanes& built)
       : document_(document), built_(built), links_(built.lanes.size()) {
     for (const Lane& lane : built.lanes) {
       const std::size_t i = lane.id.index;
@@ -58,19 +58,20 @@ class Linker {
     by_right_.sort();
   }
 
-  std::vector<LaneLinks> link() {
+  LinkedLanes link() {
     for (const Lane& lane : built_.lanes) {
       follow(lane);
       const std::size_t i = lane.id.index;
       links_[i].left = neighbour(lane, built_.left[i], by_right_, by_left_, true);
       links_[i].right = neighbour(lane, built_.right[i], by_left_, by_right_, false);
     }
+    LinkedLanes linked{std::move(links_), {}};
     if (crowded_) {
-      document_.remarks.push_back({"import.crowded", true, "file", 0,
-                                   "more than 64 lanelets meet in one place or share a border; "
-                                   "some of their links are left out"});
+      linked.remarks.push_back({"import.crowded", true, "file", 0,
+                                "more than 64 lanelets meet in one place or share a border; some "
+                                "of their links are left out"});
     }
-    return std::move(links_);
+    return linked;
   }
 
  private:
@@ -117,7 +118,7 @@ class Linker {
     return to_left != border.reversed ? rule.to_left : rule.to_right;
   }
 
-  Document& document_;
+  const Document& document_;
   const BuiltLanes& built_;
   bool crowded_ = false;
   std::vector<LaneLinks> links_;
@@ -127,7 +128,7 @@ class Linker {
 
 }  // namespace
 
-std::vector<LaneLinks> link_lanes(Document& document, const BuiltLanes& built) {
+LinkedLanes link_lanes(const Document& document, const BuiltLanes& built) {
   return Linker(document, built).link();
 }
 

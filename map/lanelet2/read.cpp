@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "roadbed/map/files/in_threads.h"
 
 namespace roadbed::map::lanelet2 {
 namespace {
@@ -37,19 +41,29 @@ RoadMapParts read(std::string bytes, const std::string& file, int threads) {
   Document document = read_document(std::move(bytes), file, threads);
   document.places = {};  // only rules about the text ask for them
   BuiltLanes built = build_lanes(document, threads);
-  return read(std::move(document), std::move(built));
+  return read(std::move(document), std::move(built), threads);
 }
 
-RoadMapParts read(Document document, BuiltLanes built) {
+RoadMapParts read(Document document, BuiltLanes built, int threads) {
   RoadMapParts parts;
   parts.format = "Lanelet2";
   parts.crs = document.crs;
   parts.origin_in_source = document.origin_in_source;
-  parts.links = link_lanes(document, built);
-  add_regulations(document, built, parts);
-  add_areas(document, parts);
-  add_objects(document, parts);
-  count_unused(document);
+  LinkedLanes linked;
+  const auto remarks_before = std::ssize(document.remarks);
+  in_threads(2, threads, [&](std::size_t task) {
+    if (task == 0) {
+      linked = link_lanes(document, built);
+      return;
+    }
+    add_regulations(document, built, parts);
+    add_areas(document, parts);
+    add_objects(document, parts);
+    count_unused(document);
+  });
+  parts.links = std::move(linked.links);
+  document.remarks.insert(document.remarks.begin() + remarks_before, linked.remarks.begin(),
+                          linked.remarks.end());
   remark_unknown_limits(built.lanes, document.remarks);
   parts.lanes = std::move(built.lanes);
   parts.remarks = std::move(document.remarks);

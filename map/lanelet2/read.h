@@ -14,6 +14,6 @@ namespace roadbed::map::lanelet2 {
 RoadMapParts read(std::string bytes, const std::string& file, int threads = 1);
 
 /// The same of a document whose lanes are built.
-RoadMapParts read(Document document, BuiltLanes built);
+RoadMapParts read(Document document, BuiltLanes built, int threads = 1);
 
 }  // namespace roadbed::map::lanelet2

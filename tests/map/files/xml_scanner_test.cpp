@@ -140,6 +140,51 @@ TEST(XmlScanner, ReadsOneElementAlone) {
   EXPECT_EQ(names, "bddb");
 }
 
+// All stretches, if they are whole; "" else.
+std::string in_stretches(const std::string& text, const std::vector<std::size_t>& cuts) {
+  std::string elements;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    XmlScanner scanner(text, "f.osm",
+                       XmlScanner::Stretch{cuts[i], cuts[i + 1], i == 0 ? "" : "osm"});
+    auto event = scanner.next();
+    for (; event != XmlScanner::Event::done && scanner.depth() > 0; event = scanner.next()) {
+      if (event == XmlScanner::Event::start) {
+        elements += fmt::format("{} {}\n", scanner.depth(), scanner.name());
+      }
+    }
+    const bool is_last = i + 2 == cuts.size();
+    if (is_last != (scanner.depth() == 0)) return "";
+    if (is_last) scanner.expect_end();
+  }
+  return elements;
+}
+
+TEST(XmlScanner, StretchesThatAreAllWholeHoldWhatTheTextHolds) {
+  std::mt19937 random(20261129);
+  const std::vector<std::string> parts{"<a/>", "<b c='<'>", "</b>", "<!-- ",  " -->",  "<![CDATA[",
+                                       "]]>",  "<d>",       "</d>", "</osm>", "<osm>", "text"};
+  int whole = 0;
+  for (int round = 0; round < 200'000; ++round) {
+    std::string text = "<osm>";
+    const std::size_t count = 2 + random() % 8;
+    for (std::size_t i = 0; i < count; ++i) text += parts[random() % parts.size()];
+    text += "</osm>";
+    std::vector<std::size_t> cuts{0};
+    for (int i = 0; i < 2; ++i) {
+      const std::size_t at = text.find('<', cuts.back() + 1 + random() % 20);
+      if (at != text.npos) cuts.push_back(at);
+    }
+    cuts.push_back(text.size());
+    std::string found;
+    if (refusal([&] { found = in_stretches(text, cuts); }) != "was read" || found.empty()) continue;
+    std::string one;
+    ASSERT_EQ(refusal([&] { one = in_stretches(text, {0, text.size()}); }), "was read") << text;
+    ASSERT_EQ(found, one) << text;
+    if (cuts.size() > 2) ++whole;
+  }
+  EXPECT_GT(whole, 1'000);
+}
+
 TEST(XmlScanner, SkipGoesPastTheElementThatStarted) {
   const std::string text = "<a><b><c/><d></d></b><e/></a>";
   XmlScanner scanner(text, "f.osm");
