@@ -21,7 +21,7 @@ struct CandidateGrid {
 /// Which candidates of a cycle are kept.
 struct KeptCandidates {
   OffsetIndexRange offsets;
-  std::size_t length_stride = 3;  ///< of the lengths, only every so many-th
+  std::size_t length_stride = 5;  ///< of the lengths, only every so many-th
 };
 
 /// Judges those that are kept as Plan::candidates are judged, for much less work: where all
