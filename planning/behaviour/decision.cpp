@@ -105,8 +105,7 @@ Option by_approach(const SpeedQuestion& q, const Lead& lead, const DecisionOptio
 
 Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
   Option option = by_approach(q, *q.lead, options);
-  option.reason = fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", q.lead_name, q.lead->gap_m,
-                              q.lead->speed_mps);
+  option.reason = lead_text(q.lead_name, q.lead->gap_m, q.lead->speed_mps);
   return option;
 }
 

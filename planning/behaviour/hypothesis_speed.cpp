@@ -10,6 +10,7 @@
 #include "roadbed/planning/behaviour/cruise_forecast.h"
 #include "roadbed/planning/speed/goal_reach.h"
 #include "roadbed/planning/speed/goals_on_path.h"
+#include "roadbed/planning/speed/lead.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {
@@ -213,8 +214,7 @@ void HypothesisSpeed::explain(const ManeuverHypothesis& best, const PlanningScen
     command.reason = *light;
   } else if (command.lead && command.lead->gap_m < kFollow_m) {
     command.behaviour = Behaviour::follow;
-    command.reason = fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", command.lead->id,
-                                 command.lead->gap_m, command.lead->speed_mps);
+    command.reason = lead_text(command.lead->id, command.lead->gap_m, command.lead->speed_mps);
   } else {
     command.reason = best.answer.reaches_goal ? "the goal is reached in time" : "the road is free";
   }

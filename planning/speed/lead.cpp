@@ -1,5 +1,7 @@
 #include "roadbed/planning/speed/lead.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -65,6 +67,12 @@ double stopping_mps2(double speed_mps, double within_m) {
 }
 
 }  // namespace
+
+std::string lead_text(const std::string& name, double gap_m, double speed_mps) {
+  constexpr double kShownAsZero_mps = 0.05;
+  const double shown_mps = std::abs(speed_mps) < kShownAsZero_mps ? 0.0 : speed_mps;
+  return fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", name, gap_m, shown_mps);
+}
 
 std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_ahead_m,
                               std::span<const Obstacle> obstacles, double t_s,

@@ -22,6 +22,10 @@ struct Lead {
   double acceleration_mps2 = 0.0;  ///< of the same, over the last 0.3 s
 };
 
+/// For reasons: who it is, how far ahead and how fast, with a decimal each; one that stands does so
+/// at 0.0 m/s, whichever way it is measured to creep.
+std::string lead_text(const std::string& name, double gap_m, double speed_mps);
+
 /// @param s_m            station of the rear axle.
 /// @param look_ahead_m   no further than this.
 /// @param side_margin_m  an obstacle this near to the body's sides counts as touched.

@@ -148,5 +148,11 @@ TEST(Followers, WhoComesOntoTheLineBehindTheVehicleFollowsIt) {
   EXPECT_FALSE(comes_behind(-24.0, 8.0, 8.0));  // both at once
 }
 
+TEST(LeadText, WhoStandsDoesSoWhicheverWayItIsMeasuredToCreep) {
+  EXPECT_EQ(planning::lead_text("car 3", 7.96, -0.04), "car 3 is 8.0 m ahead at 0.0 m/s");
+  EXPECT_EQ(planning::lead_text("car 3", 7.96, 0.04), "car 3 is 8.0 m ahead at 0.0 m/s");
+  EXPECT_EQ(planning::lead_text("car 3", 20.0, -0.26), "car 3 is 20.0 m ahead at -0.3 m/s");
+}
+
 }  // namespace
 }  // namespace roadbed::tools
