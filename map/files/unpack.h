@@ -17,7 +17,7 @@ constexpr std::size_t most_unpacked_of_maps(std::size_t) { return kMostUnpackedB
 /// The same of what takes several times its own bytes once it is read, as clouds, octrees and
 /// tables of rows do. Measured ones are packed to a third or a fifth.
 constexpr std::size_t most_unpacked_of_rows(std::size_t packed_bytes) {
-  return std::min(kMostUnpackedBytes, 40'000'000 + 8 * packed_bytes);
+  return std::min(kMostUnpackedBytes, 24'000'000 + 8 * packed_bytes);
 }
 
 /// Whether bytes begin as gzip [RFC 1952] or Zstandard [RFC 8878] does; no format that roadbed

@@ -182,10 +182,10 @@ TEST_F(Streams, ThatUnpackToMoreThanTheLimitAreRefused) {
 // Clouds, octrees and tables take several times their bytes: what unpacks to more than a file of
 // its size is worth is refused.
 TEST_F(Streams, OfRowsUnpackToNoMoreThanTheirSizeIsWorth) {
-  const std::string much(50'000'000, ' ');
+  const std::string much(25'000'000, ' ');
   const auto expect_refused = [](const ProgramRun& run) {
     EXPECT_EQ(run.status, 3);
-    EXPECT_THAT(run.err, HasSubstr(": unpacks to more than 4"));
+    EXPECT_THAT(run.err, HasSubstr(": unpacks to more than 24"));
     EXPECT_THAT(run.err, HasSubstr(" packed ones; unpack it to a file first"));
   };
   for (const std::string& file :
