@@ -33,6 +33,7 @@ TEST_P(ExplainedCycle, IsTheOneOfTheWholeDriveWithEveryCandidateThatItKeeps) {
   const std::string rows = write_trajectory_csv(whole.drive.trajectory);
   const std::string log = cycle_log(whole.drive);
   const std::size_t cycles = whole.drive.cycles.size();
+  const std::size_t stride = planning::KeptCandidates{}.length_stride;
   for (const std::size_t last : {std::size_t{0}, cycles / 4, cycles / 2, cycles - 1}) {
     const OwnDrive left(GetParam(), {.last_cycle = last});
     ASSERT_EQ(left.drive.cycles.size(), last + 1);
@@ -44,10 +45,12 @@ TEST_P(ExplainedCycle, IsTheOneOfTheWholeDriveWithEveryCandidateThatItKeeps) {
     const std::size_t width = grid.end_d_m.size();
     const std::size_t lengths = plan.candidates.size() / width;
     EXPECT_EQ(plan.candidates.size(), width * lengths);
-    EXPECT_EQ((lengths + 2) / 3, grid.end_l_m.size());
+    EXPECT_EQ((lengths + stride - 1) / stride, grid.end_l_m.size());
     for (std::size_t i = 0; i < grid.causes.size(); ++i) {
-      const planning::Candidate& candidate = plan.candidates[i / width * 3 * width + i % width];
+      const planning::Candidate& candidate =
+          plan.candidates[i / width * stride * width + i % width];
       EXPECT_EQ(candidate.end_d_m, grid.end_d_m[i % width]);
+      EXPECT_EQ(candidate.end_l_m, grid.end_l_m[i / width]);
       EXPECT_EQ(static_cast<std::uint8_t>(candidate.rejection), grid.causes[i])
           << last << ": " << candidate.end_d_m << ", " << candidate.end_l_m;
     }
