@@ -34,8 +34,8 @@ class XmlScanner {
   };
 
   /// Reads whole elements inside the text's first element; `done` comes behind the last of them, or
-  /// with the first element's end. Stretches that lie end to end and can all be read hold the same
-  /// elements as the text.
+  /// with the first element's end. Stretches that lie end to end, of which the last alone comes to
+  /// that end, hold the same elements as the text, if all of them can be read.
   XmlScanner(std::string_view text, std::string file, const Stretch& stretch);
 
   /// @throws InputError with the line if the text is not well-formed, is nested deeper than 1,000

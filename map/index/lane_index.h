@@ -29,7 +29,7 @@ class LaneIndex {
   /// finite has none.
   std::vector<LaneMatch> near(const Eigen::Vector2d& point_in_map, const LaneQuery& query) const;
 
-  /// Whether there are any, in half the time.
+  /// Whether there are any, which needs no place along them.
   bool is_any_near(const Eigen::Vector2d& point_in_map, const LaneQuery& query) const;
 
   /// The lanes near many points, one list each; taken in an order in which points near each other

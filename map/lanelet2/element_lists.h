@@ -43,7 +43,7 @@ struct ElementLists {
   std::size_t left_bytes = 0;  ///< of the memory that the file may cost
 };
 
-// What memory is spent on, besides the text [bytes]: at worst, while a list grows.
+/// What memory is spent on, besides the text [bytes]: at worst, while a list grows.
 struct ElementCost {
   static constexpr std::size_t node = 3 * sizeof(Node) + 3 * sizeof(NodePlace) + 16;
   static constexpr std::size_t other = 3 * std::max(sizeof(Way), sizeof(Relation)) + 16;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -267,33 +268,39 @@ std::vector<XmlScanner::Stretch> stretches_of(std::string_view text, std::size_t
   return stretches;
 }
 
+// Whether all stretches are whole, each read into the list of its number.
+bool read_stretches(Document& document, const std::vector<XmlScanner::Stretch>& stretches,
+                    int threads, std::vector<ElementLists>& lists) {
+  for (const XmlScanner::Stretch& stretch : stretches) {
+    document.scanners.emplace_back(document.text, document.name, stretch);
+  }
+  std::atomic<bool> are_whole = true;
+  try {
+    in_threads(stretches.size(), threads, [&](std::size_t i) {
+      XmlScanner& scanner = document.scanners[i];
+      const bool is_last = i + 1 == stretches.size();
+      make_room(i == 0 ? document.text.size() : stretches[i].to - stretches[i].from, lists[i]);
+      lists[i].left_bytes = memory_for(document) / stretches.size();
+      if (i == 0) scanner.next();
+      const auto end = ElementReader(document, scanner, lists[i]).read();
+      if ((end == XmlScanner::Event::end) != is_last) are_whole = false;  // more follows the first
+      if (is_last) scanner.expect_end();
+    });
+  } catch (const InputError&) {  // what is wrong is said by who reads it in one go
+    return false;
+  }
+  return are_whole;
+}
+
 // Reads the text in stretches that begin where an element seems to. That they are all whole proves
 // that it was one, and no text of a comment; none, if they are not.
 std::optional<ElementLists> read_in_stretches(Document& document, std::size_t count, int threads) {
   std::vector<XmlScanner::Stretch> stretches = stretches_of(document.text, count);
   XmlScanner first(document.text, document.name);
+  first.next();
+  for (std::size_t i = 1; i < stretches.size(); ++i) stretches[i].inside = first.name();
   std::vector<ElementLists> lists(stretches.size());
-  std::vector<XmlScanner::Event> ends(stretches.size());
-  try {
-    first.next();
-    for (std::size_t i = 0; i < stretches.size(); ++i) {
-      if (i > 0) stretches[i].inside = first.name();
-      document.scanners.emplace_back(document.text, document.name, stretches[i]);
-    }
-    in_threads(stretches.size(), threads, [&](std::size_t i) {
-      XmlScanner& scanner = document.scanners[i];
-      make_room(i == 0 ? document.text.size() : stretches[i].to - stretches[i].from, lists[i]);
-      lists[i].left_bytes = memory_for(document) / stretches.size();
-      if (i == 0) scanner.next();
-      ends[i] = ElementReader(document, scanner, lists[i]).read();
-      if (i + 1 == stretches.size()) scanner.expect_end();
-    });
-  } catch (const InputError&) {  // what is wrong is said by who reads it in one go
-    document.scanners.clear();
-    return std::nullopt;
-  }
-  const auto early = std::ranges::find(ends, XmlScanner::Event::end);
-  if (early + 1 != ends.end()) {  // more follows the first element
+  if (!read_stretches(document, stretches, threads, lists)) {
     document.scanners.clear();
     return std::nullopt;
   }

@@ -74,12 +74,12 @@ ManeuverHypothesis Hypotheses::best(const PlanningScene& scene,
 /// In place and time at once, as the last resort; along the line that it keeps nearest to.
 void Hypotheses::find_drive(const PlanningScene& scene,
                             const LateralReplanner::Question& question) {
-  if (scene.view.t_s < next_search_s_) return;
-  next_search_s_ = scene.view.t_s + kSearchEvery_s;
   const double t_s = scene.view.t_s;
+  if (t_s < next_search_s_) return;
+  next_search_s_ = t_s + kSearchEvery_s;
   const bool at_tyre_limit = vain_since_s_ && t_s - *vain_since_s_ >= kUsualLimitsFor_s;
   const DriveSearchOptions options = at_tyre_limit ? kSearchAtTyreLimit : DriveSearchOptions{};
-  if (task_.goal->latest_s().value_or(t_s) - t_s > options.longest_s) return;
+  if (task_.goal->latest_s().value_or(t_s) - t_s > options.longest_s) return;  // not yet in vain
   const std::vector<VehicleState> drive = search_drive({.vehicle = vehicle_,
                                                         .road_map = task_.road_map,
                                                         .bodies = scene.bodies,

@@ -48,8 +48,8 @@ class Hypotheses {
   GoalLines& lines_;
   const HypothesisSpeed& speed_;
   double next_search_s_ = 0.0;
-  std::optional<double> vain_since_s_;   ///< a drive within the usual limits was searched for
-  bool drives_at_tyre_limit_ = false;    ///< the one that was found last
+  std::optional<double> vain_since_s_;   ///< since when usual limits have not been enough
+  bool drives_at_tyre_limit_ = false;    ///< what was found last is such a drive
   std::vector<ManeuverHypothesis> all_;  ///< of this cycle
   std::size_t best_ = 0;
   std::vector<HypothesisOutcome> outcomes_;

@@ -30,8 +30,8 @@ double stopping_m(const PlannerView& view) {
 }
 
 std::string why_emergency(const RiskLevel& level, double command_mps2) {
-  if (level.most_lateral_mps2 > kUsualLateral_mps2) {
-    return fmt::format("only with more than {:.1f} m/s² to the side the goal is reached in time",
+  if (level.steers_hard()) {
+    return fmt::format("the goal is reached in time only with more than {:.1f} m/s² to the side",
                        kUsualLateral_mps2);
   }
   if (std::abs(command_mps2) > SpeedSearchOptions{}.most_mps2) {
@@ -201,7 +201,7 @@ void HypothesisSpeed::explain(const ManeuverHypothesis& best, const PlanningScen
   } else if (best.risk_level->is_emergency) {
     command.behaviour = Behaviour::emergency;
     command.reason = why_emergency(*best.risk_level, command.acceleration_mps2);
-    command.is_news = best.risk_level->most_lateral_mps2 > kUsualLateral_mps2;
+    command.is_news = best.risk_level->steers_hard();
   } else if (goal_is_past(t_s) || !has_goal) {
     command.behaviour = Behaviour::stop;
     command.reason = has_goal ? "the goal's time is over" : "no goal is asked for";

@@ -29,6 +29,8 @@ struct RiskLevel {
   bool is_emergency;
   BendLimits bends = {};
   double most_lateral_mps2 = kUsualLateral_mps2;  ///< that the wheels may be turned for
+
+  bool steers_hard() const { return most_lateral_mps2 > kUsualLateral_mps2; }
 };
 
 /// A path to ask the lateral planner for.

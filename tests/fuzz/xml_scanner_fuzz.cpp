@@ -38,6 +38,35 @@ void tried(const Ask& ask) {
   }
 }
 
+// Elements that a scanner comes to, up to the end of the first or of the stretch.
+std::size_t count_elements(XmlScanner scanner, bool is_last) {
+  std::size_t elements = 0;
+  auto event = scanner.next();
+  for (; event == XmlScanner::Event::start || scanner.depth() > 0; event = scanner.next()) {
+    if (event == XmlScanner::Event::done) break;
+    elements += event == XmlScanner::Event::start ? 1 : 0;
+  }
+  if ((scanner.depth() == 0) != is_last) throw InputError({.file = "fuzz", .found = "no stretch"});
+  if (is_last) scanner.expect_end();
+  return elements;
+}
+
+// Two stretches that are both whole hold the elements of the text, which is well-formed then.
+void scan_in_stretches(std::string_view text) {
+  const std::size_t cut = text.find('<', text.size() / 2);
+  if (cut == text.npos || cut == 0) return;
+  const std::string root(root_element(text));
+  if (root.empty()) return;
+  std::size_t elements = 0;
+  elements += count_elements({text, "fuzz", XmlScanner::Stretch{0, cut, {}}}, false);
+  elements += count_elements({text, "fuzz", XmlScanner::Stretch{cut, text.size(), root}}, true);
+  try {
+    if (count_elements({text, "fuzz"}, true) != elements) std::abort();
+  } catch (const InputError&) {
+    std::abort();
+  }
+}
+
 // Each element is asked for a number, a text and a place.
 void ask_document(const std::string& text) {
   const XmlDocument document(text, "fuzz");
@@ -62,6 +91,7 @@ void ask_document(const std::string& text) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   tried([&] { scan(text); });
+  tried([&] { scan_in_stretches(text); });
   tried([&] { ask_document(text); });
   html_text(text);
   return 0;

@@ -70,7 +70,11 @@ void compare_with_brute_force(const RoadMap& road_map, int count) {
   for (const Eigen::Vector2d& point : points_near_lanes(road_map, count, 30.0)) {
     const auto expected = by_brute_force(road_map, point, 20.0);
     expect_same_lanes(road_map.index().lanes.near(point, {.radius_m = 20.0}), expected);
-    EXPECT_EQ(road_map.index().lanes.is_any_near(point, {.radius_m = 20.0}), !expected.empty());
+    for (const double radius_m : {0.0, 1.0, 20.0}) {
+      const auto is_within = [&](const auto& lane) { return lane.distance_m <= radius_m; };
+      EXPECT_EQ(road_map.index().lanes.is_any_near(point, {.radius_m = radius_m, .count = 1}),
+                std::ranges::any_of(expected, is_within));
+    }
     const auto nearest = road_map.index().lanes.near(point, {.radius_m = 20.0, .count = 1});
     ASSERT_EQ(nearest.size(), std::min<std::size_t>(1, expected.size()));
     if (nearest.empty()) continue;
