@@ -55,7 +55,8 @@ std::optional<double> parse_finite(std::string_view text) {
 }
 
 // Takes the root's prefix off all names that have it: <o:OpenDRIVE> and what it holds are read as
-// if the namespace were the default one. Names only become shorter, in place.
+// if the namespace were the default one. Names only become shorter, in place, and none becomes
+// empty, which would have no place.
 void drop_prefix(pugi::xml_node root) {
   const std::string_view name = root.name();
   const auto colon = name.find(':');
@@ -63,7 +64,9 @@ void drop_prefix(pugi::xml_node root) {
   const std::string prefix(name.substr(0, colon + 1));
   const auto shorten = [&](pugi::xml_node node) {
     const std::string_view full = node.name();
-    if (full.starts_with(prefix)) node.set_name(std::string(full.substr(prefix.size())).c_str());
+    const bool has_more = full.size() > prefix.size();
+    if (has_more && full.starts_with(prefix))
+      node.set_name(std::string(full.substr(prefix.size())).c_str());
   };
   pugi::xml_node node = root;
   while (node) {
