@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -43,13 +45,35 @@ class PointBudget {
   }
 
   bool try_to_spend(std::size_t points) {
-    if (points > left_) return false;
+    if (points > left_ && !take_block(points)) return false;
     left_ -= points;
     return true;
   }
 
+  /// A part for one of several threads, which takes blocks of what the others take from, too, and
+  /// gives back at its end what it did not spend.
+  explicit PointBudget(std::atomic<std::size_t>& common) : common_(&common) {}
+  ~PointBudget() {
+    if (common_ != nullptr) *common_ += left_;
+  }
+  PointBudget(const PointBudget&) = delete;
+  PointBudget& operator=(const PointBudget&) = delete;
+
  private:
-  std::size_t left_;
+  bool take_block(std::size_t points) {
+    if (common_ == nullptr) return false;
+    constexpr std::size_t kBlock = 4096;
+    std::size_t there = *common_, block = 0;
+    do {
+      if (points - left_ > there) return false;
+      block = std::min(there, std::max(points - left_, kBlock));
+    } while (!common_->compare_exchange_weak(there, there - block));
+    left_ += block;
+    return true;
+  }
+
+  std::atomic<std::size_t>* common_ = nullptr;
+  std::size_t left_ = 0;
 };
 
 /// How many lanes the budget of a file can hold: each has two points of two borders at least.

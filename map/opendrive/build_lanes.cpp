@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <iterator>
 
+#include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/opendrive/sample_borders.h"
 
 namespace roadbed::map::opendrive {
@@ -43,68 +45,73 @@ bool drives_forward(const RoadRecord& road, const LaneRecord& lane) {
   return (right != road.left_hand_traffic) != (lane.direction == "reversed");
 }
 
+// The lanes of a road, counted from 0, and what there is to say of them.
+struct RoadLanes {
+  BuiltLanes built;
+  std::vector<ImportDiagnostic> remarks;
+};
+
 class LaneBuilder {
  public:
-  LaneBuilder(const Document& document, const std::map<std::string, JunctionId>& junctions,
-              double max_error_m, PointBudget& budget, std::vector<ImportDiagnostic>& remarks)
-      : document_(document),
-        junctions_(junctions),
+  LaneBuilder(const Document& document, std::size_t road_index, const geometry::PlanView& plan_view,
+              std::optional<JunctionId> junction, double max_error_m, PointBudget& budget)
+      : road_(document.roads[road_index]),
+        road_index_(road_index),
+        plan_view_(plan_view),
+        junction_(junction),
         max_error_m_(max_error_m),
-        budget_(budget),
-        remarks_(remarks) {}
+        budget_(budget) {}
 
-  void add_section(std::size_t road_index, std::size_t section_index,
-                   const geometry::PlanView& plan_view) {
-    for (const int sign : {1, -1}) {
-      const RoadRecord& road = document_.roads[road_index];
-      const SectionSide side = section_side(road, section_index, sign);
-      const SideLines lines = sample_side(road, road_index, plan_view, side, max_error_m_, budget_);
-      if (lines.s_m.size() >= 2) built_.side_stations_m.push_back(lines.s_m);
-      for (std::size_t i = 0; i < side.lanes.size(); ++i) {
-        if (lines.s_m.size() < 2) {
-          remark_empty(road, *side.lanes[i]);
-        } else {
-          add_lane(road_index, section_index, side, lines, i);
-        }
+  RoadLanes build() {
+    for (std::size_t section = 0; section < road_.sections.size(); ++section) {
+      for (const int sign : {1, -1}) add_side(section, section_side(road_, section, sign));
+    }
+    return {std::move(built_), std::move(remarks_)};
+  }
+
+ private:
+  void add_side(std::size_t section, const SectionSide& side) {
+    const SideLines lines =
+        sample_side(road_, road_index_, plan_view_, side, max_error_m_, budget_);
+    if (lines.s_m.size() >= 2) built_.side_stations_m.push_back(lines.s_m);
+    for (std::size_t i = 0; i < side.lanes.size(); ++i) {
+      if (lines.s_m.size() < 2) {
+        remark_empty(*side.lanes[i]);
+      } else {
+        add_lane(section, side, lines, i);
       }
     }
   }
 
-  BuiltLanes take() { return std::move(built_); }
-
- private:
-  void remark_empty(const RoadRecord& road, const LaneRecord& lane) {
+  void remark_empty(const LaneRecord& lane) {
     remarks_.push_back({"import.empty-section", true,
-                        fmt::format("road {}, lane {}", road.id, lane.id), lane.line,
+                        fmt::format("road {}, lane {}", road_.id, lane.id), lane.line,
                         "its lane section has no length and the lane is left out"});
   }
 
-  void add_lane(std::size_t road_index, std::size_t section_index, const SectionSide& side,
-                const SideLines& lines, std::size_t index) {
-    const RoadRecord& road = document_.roads[road_index];
+  void add_lane(std::size_t section_index, const SectionSide& side, const SideLines& lines,
+                std::size_t index) {
     const LaneRecord& record = *side.lanes[index];
-    const bool forward = drives_forward(road, record);
-    budget_.spend(PointBudget::kPerThing, road_index);
+    const bool forward = drives_forward(road_, record);
+    budget_.spend(PointBudget::kPerThing, road_index_);
     Lane lane;
     lane.id = LaneId{static_cast<std::uint32_t>(built_.lanes.size())};
-    lane.road = RoadId{static_cast<std::uint32_t>(road_index)};
-    if (const auto found = junctions_.find(road.junction_id); found != junctions_.end()) {
-      lane.junction = found->second;
-    }
+    lane.road = RoadId{static_cast<std::uint32_t>(road_index_)};
+    lane.junction = junction_;
     lane.origin = {static_cast<int>(section_index), std::to_string(record.id),
                    forward ? side.from_s_m : side.to_s_m, forward ? side.to_s_m : side.from_s_m};
-    lane.name = fmt::format("{}/{}/{}", road.id, section_index, record.id);
+    lane.name = fmt::format("{}/{}/{}", road_.id, section_index, record.id);
     lane.type = record.type;
     lane.one_way = record.direction != "both" && record.type != LaneType::bidirectional;
     lane.participants = participants_along(record);
     lane.attributes = record.attributes;
     if (!record.accesses.empty()) lane.attributes.emplace_back("access", access_in_words(record));
     set_lines(side, lines, index, forward, lane);
-    built_.ids[{road_index, section_index, record.id}] = lane.id;
+    built_.ids[{road_index_, section_index, record.id}] = lane.id;
     built_.forward.push_back(forward);
     built_.side_of_lane.push_back(static_cast<std::uint32_t>(built_.side_stations_m.size() - 1));
     built_.lanes.push_back(std::move(lane));
-    set_rules(road, document_.roads[road_index].sections[section_index], side, index);
+    set_rules(road_.sections[section_index], side, index);
   }
 
   static void set_lines(const SectionSide& side, const SideLines& lines, std::size_t index,
@@ -129,11 +136,10 @@ class LaneBuilder {
   }
 
   // What holds along the lane that was added last: speed limits, and the markings of its borders.
-  void set_rules(const RoadRecord& road, const LaneSection& section, const SectionSide& side,
-                 std::size_t index) {
+  void set_rules(const LaneSection& section, const SectionSide& side, std::size_t index) {
     Lane& lane = built_.lanes.back();
     const LaneRecord& record = *side.lanes[index];
-    const auto speeds = speed_stretches(road, record, side.from_s_m, side.to_s_m);
+    const auto speeds = speed_stretches(road_, record, side.from_s_m, side.to_s_m);
     if (speeds.size() > 1 || speeds.front().value) {
       for (const auto& stretch : in_driving_order(built_, lane.id, speeds)) {
         lane.speed_limits.push_back({stretch.from_s_m, stretch.value});
@@ -158,13 +164,47 @@ class LaneBuilder {
     }
   }
 
-  const Document& document_;
-  const std::map<std::string, JunctionId>& junctions_;
+  const RoadRecord& road_;
+  std::size_t road_index_;
+  const geometry::PlanView& plan_view_;
+  std::optional<JunctionId> junction_;
   double max_error_m_;
   PointBudget& budget_;
-  std::vector<ImportDiagnostic>& remarks_;
   BuiltLanes built_;
+  std::vector<ImportDiagnostic> remarks_;
 };
+
+void append(BuiltLanes of_road, BuiltLanes& all) {
+  const auto lanes = static_cast<std::uint32_t>(all.lanes.size());
+  const auto sides = static_cast<std::uint32_t>(all.side_stations_m.size());
+  for (Lane& lane : of_road.lanes) {
+    lane.id.index += lanes;
+    all.lanes.push_back(std::move(lane));
+  }
+  for (const auto& [key, id] : of_road.ids) {
+    all.ids.emplace_hint(all.ids.end(), key, LaneId{id.index + lanes});
+  }
+  all.forward.insert(all.forward.end(), of_road.forward.begin(), of_road.forward.end());
+  std::ranges::move(of_road.side_stations_m, std::back_inserter(all.side_stations_m));
+  for (const std::uint32_t side : of_road.side_of_lane) all.side_of_lane.push_back(side + sides);
+}
+
+// Of each road; the budget is spent by all of them.
+std::vector<RoadLanes> lanes_of_roads(const Document& document,
+                                      const std::vector<geometry::PlanView>& plan_views,
+                                      const std::map<std::string, JunctionId>& junctions,
+                                      double max_error_m, int threads,
+                                      std::atomic<std::size_t>& budget) {
+  std::vector<RoadLanes> roads(document.roads.size());
+  in_threads(roads.size(), threads, [&](std::size_t i) {
+    const auto found = junctions.find(document.roads[i].junction_id);
+    const auto junction =
+        found == junctions.end() ? std::nullopt : std::optional<JunctionId>(found->second);
+    PointBudget own(budget);
+    roads[i] = LaneBuilder(document, i, plan_views[i], junction, max_error_m, own).build();
+  });
+  return roads;
+}
 
 }  // namespace
 
@@ -183,15 +223,28 @@ double BuiltLanes::station_m(LaneId lane, double road_s_m) const {
 }
 
 BuiltLanes build_lanes(const Document& document, const std::vector<geometry::PlanView>& plan_views,
-                       const std::map<std::string, JunctionId>& junctions, double max_error_m,
-                       PointBudget& budget, std::vector<ImportDiagnostic>& remarks) {
-  LaneBuilder builder(document, junctions, max_error_m, budget, remarks);
-  for (std::size_t road = 0; road < document.roads.size(); ++road) {
-    for (std::size_t section = 0; section < document.roads[road].sections.size(); ++section) {
-      builder.add_section(road, section, plan_views[road]);
-    }
+                       const std::map<std::string, JunctionId>& junctions,
+                       const LoadOptions& options, PointBudget& budget,
+                       std::vector<ImportDiagnostic>& remarks) {
+  const auto build = [&](int threads) {
+    std::atomic<std::size_t> left = budget.left();
+    auto roads =
+        lanes_of_roads(document, plan_views, junctions, options.max_error_m, threads, left);
+    budget.try_to_spend(budget.left() - left);
+    return roads;
+  };
+  std::vector<RoadLanes> roads;
+  try {
+    roads = build(options.threads);
+  } catch (const RoadFault&) {
+    roads = build(1);  // which of the roads was one too many is told in their order
   }
-  return builder.take();
+  BuiltLanes built;
+  for (RoadLanes& road : roads) {
+    append(std::move(road.built), built);
+    std::ranges::move(road.remarks, std::back_inserter(remarks));
+  }
+  return built;
 }
 
 }  // namespace roadbed::map::opendrive

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "roadbed/map/elements/lane_graph.h"
+#include "roadbed/map/model/load_options.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/opendrive/budget.h"
 #include "roadbed/map/opendrive/document.h"
@@ -48,11 +49,13 @@ std::vector<Stretch<Value>> in_driving_order(const BuiltLanes& built, LaneId lan
   return along_road;
 }
 
-/// All lanes of all roads, sampled; lanes of no length are left out and remarked.
+/// All lanes of all roads, sampled; lanes of no length are left out and remarked. The same for any
+/// number of threads.
 /// @throws RoadFault as sample_side does.
 BuiltLanes build_lanes(const Document& document, const std::vector<geometry::PlanView>& plan_views,
-                       const std::map<std::string, JunctionId>& junctions, double max_error_m,
-                       PointBudget& budget, std::vector<ImportDiagnostic>& remarks);
+                       const std::map<std::string, JunctionId>& junctions,
+                       const LoadOptions& options, PointBudget& budget,
+                       std::vector<ImportDiagnostic>& remarks);
 
 /// How the lanes connect: along roads, across road ends, through junctions, and side by side.
 /// Links that name what is not there are remarked and left out.

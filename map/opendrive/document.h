@@ -282,7 +282,6 @@ struct Document {
   std::vector<Controller> controllers;
   std::vector<ImportDiagnostic> remarks;
   std::vector<UnusedContent> unused;
-  std::size_t lanes_left = 0;         ///< how many more may be read: a bound of memory
   std::optional<InputError> refusal;  ///< the first fault that makes it unusable as a map
 };
 

@@ -14,9 +14,16 @@ namespace roadbed::map::opendrive {
 /// major revision is a fault.
 void read_header(AttributeReader& in, Document& document);
 
-/// All <road> elements into `document.roads`. Roads without a geometry and repeated ones are
-/// remarked; that there is no usable one is a fault.
-void read_roads(AttributeReader& in, Document& document);
+/// All <road> elements into `document.roads`, in threads. Roads without a geometry and repeated
+/// ones are remarked; that there is no usable one is a fault.
+void read_roads(AttributeReader& in, Document& document, int threads);
+
+/// What there is to say of a road that is being read, and how many lanes it may have: a bound of
+/// memory.
+struct RoadNotes {
+  std::vector<ImportDiagnostic> remarks;
+  std::size_t most_lanes = 0;
+};
 
 /// Whether a map can have the road: it is not repeated, and has a plan view of positive length.
 bool is_usable(const RoadRecord& road);
@@ -26,7 +33,7 @@ std::optional<RoadLink> read_road_link(AttributeReader& in, pugi::xml_node node)
 
 /// <planView> of a road, as listed. Pieces of no length, and lengths that do not fit, are remarked;
 /// a value beyond that of any road is a fault.
-void read_plan_view(AttributeReader& in, RoadRecord& road, Document& document);
+void read_plan_view(AttributeReader& in, RoadRecord& road, RoadNotes& notes);
 
 /// Shorter than this a piece has no direction of its own; leaving it out moves nothing.
 inline constexpr double kShortestPieceM = 1e-9;
@@ -39,7 +46,10 @@ void read_lane_offset(AttributeReader& in, pugi::xml_node lanes, RoadRecord& roa
 
 /// All lane sections of a road, as listed; none if it has more lanes than memory is granted for,
 /// which is a fault.
-void read_lanes(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road, Document& document);
+void read_lanes(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road, RoadNotes& notes);
+
+/// How many <lane> elements they have.
+std::size_t count_lanes(pugi::xml_node lanes);
 
 /// Puts the records of a road and of its lanes in order of their stations, and makes its profiles.
 /// Sections in order of s; repeated lanes are left out.

@@ -158,7 +158,7 @@ std::vector<Regulation> build_priorities(const Document& document, const RoadMap
 }  // namespace
 
 RoadMapParts read(XmlDocument xml, const LoadOptions& options) {
-  Document document = read_document(xml);
+  Document document = read_document(xml, options.threads);
   return read(std::move(xml), std::move(document), options);
 }
 
@@ -181,7 +181,7 @@ RoadMapParts read(XmlDocument xml, Document document, const LoadOptions& options
   BuiltLanes built;
   PointBudget budget(xml.size_bytes());
   try {
-    built = build_lanes(document, views, junction_ids, options.max_error_m, budget, parts.remarks);
+    built = build_lanes(document, views, junction_ids, options, budget, parts.remarks);
     parts.roads = build_roads(document, views, junction_ids, options.max_error_m, budget);
   } catch (const RoadFault& fault) {
     refuse_road(xml, document.roads[fault.road_index], fault.what(), fault.what_to_do);

@@ -15,8 +15,9 @@ RoadMapParts read(XmlDocument xml, const LoadOptions& options);
 /// The same from the file's document, as read_document() gives it.
 RoadMapParts read(XmlDocument xml, Document document, const LoadOptions& options);
 
-/// As the file lists it; whether a map can be made of it its `refusal` says.
-Document read_document(const XmlDocument& xml);
+/// As the file lists it, the same for any number of threads; whether a map can be made of it its
+/// `refusal` says.
+Document read_document(const XmlDocument& xml, int threads = 1);
 
 /// Leaves out what is broken or repeated, puts records in order of their stations, splits roads
 /// where virtual junctions join them, and moves coordinates near to the map. What is split is

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "roadbed/map/opendrive/budget.h"
 #include "roadbed/map/opendrive/element_readers.h"
 
 namespace roadbed::map::opendrive {
@@ -26,12 +25,11 @@ void move_to_local_origin(Document& document) {
 
 }  // namespace
 
-Document read_document(const XmlDocument& xml) {
+Document read_document(const XmlDocument& xml, int threads) {
   Document document;
-  document.lanes_left = most_lanes(xml.size_bytes());
   AttributeReader in(xml);
   read_header(in, document);
-  read_roads(in, document);
+  read_roads(in, document, threads);
   read_junctions(in, document);
   read_controllers(xml, document);
   document.unused = count_unused(xml);

@@ -111,12 +111,12 @@ class LaneReader {
   Attributes rules_;
 };
 
-void add_lane(LaneRecord lane, const XmlDocument& xml, LaneSection& section, Document& document) {
+void add_lane(LaneRecord lane, const XmlDocument& xml, LaneSection& section, RoadNotes& notes) {
   if (section.find(lane.id) != nullptr) {
-    document.remarks.push_back({"import.duplicate-lane", true, XmlDocument::place_of(lane.node),
-                                xml.line_of(lane.node),
-                                "has the id of a lane before it in its section and is left out; "
-                                "give it another id"});
+    notes.remarks.push_back({"import.duplicate-lane", true, XmlDocument::place_of(lane.node),
+                             xml.line_of(lane.node),
+                             "has the id of a lane before it in its section and is left out; "
+                             "give it another id"});
   }
   const int id = lane.id;
   lane.place = static_cast<int>(section.lanes.size());
@@ -126,32 +126,37 @@ void add_lane(LaneRecord lane, const XmlDocument& xml, LaneSection& section, Doc
 constexpr std::array<const char*, 3> kSides = {"left", "center", "right"};
 
 void read_section(AttributeReader& in, pugi::xml_node node, LaneSection& section,
-                  Document& document) {
+                  RoadNotes& notes) {
   section.node = node;
   section.s_m = in.number(node, "s");
   section.line = in.xml.line_of(node);
   section.single_side = is_true(node.attribute("singleSide").value());
-  LaneReader reader(in, section.s_m, document.remarks);
+  LaneReader reader(in, section.s_m, notes.remarks);
   for (const char* side : kSides) {
     for (const auto child : node.child(side).children("lane")) {
-      --document.lanes_left;
       if (auto lane = reader.read(child, side)) {
-        add_lane(*std::move(lane), in.xml, section, document);
+        add_lane(*std::move(lane), in.xml, section, notes);
       }
     }
   }
 }
 
-// The first lane of a road that memory is not granted for; none if it is for all.
-pugi::xml_node first_lane_beyond(std::size_t lanes_left, pugi::xml_node lanes) {
+// Calls `f` with each lane, until it is true. @returns that lane
+template <typename F>
+pugi::xml_node find_lane(pugi::xml_node lanes, const F& f) {
   for (const auto section : lanes.children("laneSection")) {
     for (const char* side : kSides) {
       for (const auto lane : section.child(side).children("lane")) {
-        if (lanes_left-- == 0) return lane;
+        if (f(lane)) return lane;
       }
     }
   }
   return {};
+}
+
+// The first lane of a road that memory is not granted for; none if it is for all.
+pugi::xml_node first_lane_beyond(std::size_t most_lanes, pugi::xml_node lanes) {
+  return find_lane(lanes, [&](pugi::xml_node) { return most_lanes-- == 0; });
 }
 
 // The records in order of station; they are not needed one by one any more.
@@ -237,23 +242,29 @@ std::vector<std::reference_wrapper<const LaneRecord>> LaneSection::listed() cons
   return list;
 }
 
+std::size_t count_lanes(pugi::xml_node lanes) {
+  std::size_t count = 0;
+  find_lane(lanes, [&](pugi::xml_node) { return ++count == 0; });
+  return count;
+}
+
 void read_lane_offset(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road) {
   road.lane_offset.listed = read_cubics(in, lanes, "laneOffset", "s", 0.0);
 }
 
-void read_lanes(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road, Document& document) {
-  if (const auto beyond = first_lane_beyond(document.lanes_left, lanes)) {
+void read_lanes(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road, RoadNotes& notes) {
+  if (const auto beyond = first_lane_beyond(notes.most_lanes, lanes)) {
     in.refuse(beyond, "more lanes than a map of this size can hold", "fewer lane sections",
               "check whether the file is whole");
     return;
   }
   const auto nodes = lanes.children("laneSection");
   road.sections.reserve(static_cast<std::size_t>(std::distance(nodes.begin(), nodes.end())));
-  for (const auto node : nodes) read_section(in, node, road.sections.emplace_back(), document);
+  for (const auto node : nodes) read_section(in, node, road.sections.emplace_back(), notes);
   mark_clipped_ends(lanes.parent(), road);
   if (road.sections.empty()) {
-    document.remarks.push_back({"import.no-lanes", true, "road " + road.id, road.line,
-                                "has no lane section and gives no lane"});
+    notes.remarks.push_back({"import.no-lanes", true, "road " + road.id, road.line,
+                             "has no lane section and gives no lane"});
   }
 }
 

@@ -73,19 +73,19 @@ bool is_in_range(const geometry::PlanPiece& piece) {
 
 // paramPoly3: its parameter is taken as proportional to s, so its length must be the stated one.
 void check_param_poly3(const RoadRecord& road, const geometry::PlanPiece& piece, long line,
-                       Document& document) {
+                       RoadNotes& notes) {
   const auto* curve = std::get_if<geometry::ParamPoly3Curve>(&piece.curve);
   if (curve == nullptr) return;
   const double length_m = geometry::arc_length_m(*curve);
   if (std::abs(length_m - piece.length_m) > 1e-3 * std::max(1.0, piece.length_m)) {
-    document.remarks.push_back(
+    notes.remarks.push_back(
         {"import.param-poly3-length", true, "road " + road.id, line,
          fmt::format("paramPoly3 is {:.4f} m long but its length says {:.4f} m; correct one",
                      length_m, piece.length_m)});
   }
 }
 
-void check_length(const RoadRecord& road, Document& document) {
+void check_length(const RoadRecord& road, RoadNotes& notes) {
   const geometry::PlanPiece* last = nullptr;
   for (const GeometryRecord& geometry : road.geometry) {
     if (geometry.piece && (!last || geometry.piece->s_m >= last->s_m)) last = &*geometry.piece;
@@ -93,7 +93,7 @@ void check_length(const RoadRecord& road, Document& document) {
   if (last == nullptr) return;
   const double off_m = last->s_m + last->length_m - road.length_m;
   if (std::abs(off_m) > 0.01) {
-    document.remarks.push_back(
+    notes.remarks.push_back(
         {"import.road-length", true, "road " + road.id, road.line,
          fmt::format("length is {} m but its plan view ends at {} m; correct one of them",
                      road.length_m, last->s_m + last->length_m)});
@@ -115,13 +115,13 @@ std::optional<geometry::PlanPiece> read_piece(AttributeReader& in, const Geometr
 
 }  // namespace
 
-void read_plan_view(AttributeReader& in, RoadRecord& road, Document& document) {
+void read_plan_view(AttributeReader& in, RoadRecord& road, RoadNotes& notes) {
   for (const auto node : road.node.child("planView").children("geometry")) {
     GeometryRecord& record = road.geometry.emplace_back();
     record.node = node;
     record.length_m = in.number(node, "length");
     if (record.length_m < kShortestPieceM) {
-      document.remarks.push_back(
+      notes.remarks.push_back(
           {"import.zero-length", true, "road " + road.id, in.xml.line_of(node),
            fmt::format("geometry of length {} m is left out; remove it", record.length_m)});
       in.set_aside([&] { record.s_m = in.number(node, "s"); });
@@ -129,9 +129,9 @@ void read_plan_view(AttributeReader& in, RoadRecord& road, Document& document) {
     }
     record.s_m = in.number(node, "s");
     record.piece = read_piece(in, record);
-    if (record.piece) check_param_poly3(road, *record.piece, in.xml.line_of(node), document);
+    if (record.piece) check_param_poly3(road, *record.piece, in.xml.line_of(node), notes);
   }
-  check_length(road, document);
+  check_length(road, notes);
 }
 
 }  // namespace roadbed::map::opendrive

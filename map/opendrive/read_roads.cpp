@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <string_view>
 
+#include "roadbed/map/files/in_threads.h"
+#include "roadbed/map/opendrive/budget.h"
 #include "roadbed/map/opendrive/values.h"
 
 namespace roadbed::map::opendrive {
@@ -152,7 +155,7 @@ void read_length(AttributeReader& in, RoadRecord& road) {
   }
 }
 
-void read_road(AttributeReader& in, RoadRecord& road, Document& document) {
+void read_road(AttributeReader& in, RoadRecord& road, RoadNotes& notes) {
   const pugi::xml_node node = road.node;
   road.line = in.xml.line_of(node);
   road.name = node.attribute("name").value();
@@ -162,26 +165,50 @@ void read_road(AttributeReader& in, RoadRecord& road, Document& document) {
   road.left_hand_traffic = std::string_view(node.attribute("rule").value()) == "LHT";
   road.predecessor = read_road_link(in, node.child("link").child("predecessor"));
   road.successor = read_road_link(in, node.child("link").child("successor"));
-  read_speeds(in, node, road, document.remarks);
-  read_plan_view(in, road, document);
-  read_profiles(in, node, road, document.remarks);
-  read_lanes(in, node.child("lanes"), road, document);
-  read_signals(in, node.child("signals"), road, document.remarks);
-  read_objects(in, node.child("objects"), road, document.remarks);
+  read_speeds(in, node, road, notes.remarks);
+  read_plan_view(in, road, notes);
+  read_profiles(in, node, road, notes.remarks);
+  read_lanes(in, node.child("lanes"), road, notes);
+  read_signals(in, node.child("signals"), road, notes.remarks);
+  read_objects(in, node.child("objects"), road, notes.remarks);
 }
 
 // Links could mean either of two roads of one id: only the first is taken. The rules look at the
 // other, too; what it costs and what is wrong in it is not the map's.
-void read_repeated(AttributeReader& in, RoadRecord& road, Document& document) {
-  document.remarks.push_back({"import.duplicate-road", true, XmlDocument::place_of(road.node),
-                              in.xml.line_of(road.node),
-                              "has the id of a road before it and is left out, as links could "
-                              "mean either; give it another id"});
-  road.is_repeated = true;
-  const std::size_t remarks = document.remarks.size(), lanes_left = document.lanes_left;
-  in.set_aside([&] { read_road(in, road, document); });
-  document.remarks.resize(remarks);
-  document.lanes_left = lanes_left;
+void read_repeated(AttributeReader& in, RoadRecord& road, RoadNotes& notes) {
+  notes.remarks.push_back({"import.duplicate-road", true, XmlDocument::place_of(road.node),
+                           in.xml.line_of(road.node),
+                           "has the id of a road before it and is left out, as links could "
+                           "mean either; give it another id"});
+  const std::size_t remarks = notes.remarks.size();
+  in.set_aside([&] { read_road(in, road, notes); });
+  notes.remarks.resize(remarks);
+}
+
+void read_listed(AttributeReader& in, RoadRecord& road, RoadNotes& notes) {
+  in.text(road.node, "id");  // or it is a fault
+  if (road.is_repeated) return read_repeated(in, road, notes);
+  read_road(in, road, notes);
+  if (is_usable(road)) return;
+  notes.remarks.push_back({"import.no-geometry", true, "road " + road.id, road.line,
+                           "has no plan view of positive length and is left out"});
+}
+
+// The roads, and how many lanes each may have.
+std::vector<RoadNotes> list_roads(const XmlDocument& xml, Document& document) {
+  std::vector<RoadNotes> notes;
+  std::size_t lanes_left = most_lanes(xml.size_bytes());
+  std::set<std::string_view> seen;
+  for (const auto node : xml.root().children("road")) {
+    RoadRecord& road = document.roads.emplace_back();
+    road.node = node;
+    road.id = node.attribute("id").value();
+    road.is_repeated = !seen.insert(node.attribute("id").value()).second;
+    notes.push_back({{}, lanes_left});
+    const std::size_t lanes = count_lanes(node.child("lanes"));
+    if (!road.is_repeated && lanes <= lanes_left) lanes_left -= lanes;
+  }
+  return notes;
 }
 
 }  // namespace
@@ -207,21 +234,17 @@ bool is_usable(const RoadRecord& road) {
          std::any_of(road.geometry.begin(), road.geometry.end(), has_length);
 }
 
-void read_roads(AttributeReader& in, Document& document) {
-  std::set<std::string> seen;
-  for (const auto node : in.xml.root().children("road")) {
-    RoadRecord& road = document.roads.emplace_back();
-    road.node = node;
-    road.id = in.text(node, "id");
-    if (!seen.insert(road.id).second) {
-      read_repeated(in, road, document);
-      continue;
-    }
-    read_road(in, road, document);
-    if (!is_usable(road)) {
-      document.remarks.push_back({"import.no-geometry", true, "road " + road.id, road.line,
-                                  "has no plan view of positive length and is left out"});
-    }
+void read_roads(AttributeReader& in, Document& document, int threads) {
+  std::vector<RoadNotes> notes = list_roads(in.xml, document);
+  std::vector<std::optional<InputError>> faults(notes.size());
+  in_threads(notes.size(), threads, [&](std::size_t i) {
+    AttributeReader own(in.xml);
+    read_listed(own, document.roads[i], notes[i]);
+    faults[i] = own.fault();
+  });
+  for (std::size_t i = 0; i < notes.size(); ++i) {
+    std::ranges::move(notes[i].remarks, std::back_inserter(document.remarks));
+    if (faults[i]) in.keep(*std::move(faults[i]));
   }
   if (std::none_of(document.roads.begin(), document.roads.end(), is_usable)) {
     in.refuse(in.xml.root(), "no road with a geometry", "at least one road",

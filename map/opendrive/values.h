@@ -51,6 +51,11 @@ class AttributeReader {
     return std::exchange(fault_, std::move(before));
   }
 
+  /// A fault that another reader found.
+  void keep(InputError fault) {
+    if (!fault_) fault_ = std::move(fault);
+  }
+
   const std::optional<InputError>& fault() const { return fault_; }
 
   const XmlDocument& xml;
