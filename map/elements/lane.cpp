@@ -20,6 +20,36 @@ Value value_at(const std::vector<double>& stations_m, const std::vector<Value>& 
   return values[i - 1] + fraction * (values[i] - values[i - 1]);
 }
 
+geometry::Ring ring_between(const geometry::Polyline& left, const geometry::Polyline& right) {
+  geometry::Ring ring = right.points();
+  ring.insert(ring.end(), left.points().rbegin(), left.points().rend());
+  return ring;
+}
+
+// Without repeated points; none where fewer than three are left.
+geometry::Ring counter_clockwise(geometry::Ring ring) {
+  ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+  while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
+  if (ring.size() < 3) return {};
+  if (geometry::signed_area_m2(ring) < 0.0) std::reverse(ring.begin(), ring.end());
+  return ring;
+}
+
+bool folds(const geometry::Ring& ring) {
+  return !ring.empty() && !(geometry::signed_area_m2(ring) > 0.0 && geometry::is_simple(ring));
+}
+
+geometry::Ring largest_part(const geometry::Ring& ring) {
+  geometry::Ring largest;
+  for (geometry::Polygon& part : geometry::make_simple(ring)) {
+    if (largest.empty() ||
+        geometry::signed_area_m2(part.outer) > geometry::signed_area_m2(largest)) {
+      largest = std::move(part.outer);
+    }
+  }
+  return largest;
+}
+
 }  // namespace
 
 std::string_view to_string(LaneType type) {
@@ -97,26 +127,20 @@ double Lane::width_m(double s_m) const {
 }
 
 geometry::Ring simple_ring(geometry::Ring ring) {
-  ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-  while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-  if (ring.size() < 3) return {};
-  if (geometry::signed_area_m2(ring) < 0.0) std::reverse(ring.begin(), ring.end());
-  if (geometry::signed_area_m2(ring) > 0.0 && geometry::is_simple(ring)) return ring;
-  geometry::Ring largest;
-  for (geometry::Polygon& part : geometry::make_simple(ring)) {
-    if (largest.empty() ||
-        geometry::signed_area_m2(part.outer) > geometry::signed_area_m2(largest)) {
-      largest = std::move(part.outer);
-    }
-  }
-  return largest;
+  ring = counter_clockwise(std::move(ring));
+  return folds(ring) ? largest_part(ring) : ring;
 }
 
 geometry::Ring lane_ring(const geometry::Polyline& left_in_map,
                          const geometry::Polyline& right_in_map) {
-  geometry::Ring ring = right_in_map.points();
-  ring.insert(ring.end(), left_in_map.points().rbegin(), left_in_map.points().rend());
-  return simple_ring(std::move(ring));
+  return simple_ring(ring_between(left_in_map, right_in_map));
 }
+
+bool lay_ring(Lane& lane) {
+  lane.polygon = counter_clockwise(ring_between(lane.left.in_map, lane.right.in_map));
+  return folds(lane.polygon);
+}
+
+void unfold_ring(Lane& lane) { lane.polygon = largest_part(lane.polygon); }
 
 }  // namespace roadbed::map::elements

@@ -7,6 +7,7 @@
 
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/geometry/primitives/polyline.h"
+#include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/elements/attributes.h"
 #include "roadbed/map/elements/border_mark.h"
 #include "roadbed/map/elements/id.h"
@@ -128,5 +129,18 @@ geometry::Ring lane_ring(const geometry::Polyline& left_in_map,
 
 /// The same for any closed ring of points.
 geometry::Ring simple_ring(geometry::Ring ring);
+
+/// The same in two steps: the lane's ring, which may fold over itself, then its largest part.
+/// @returns whether it folds: the second step then takes a thousand times longer.
+bool lay_ring(Lane& lane);
+void unfold_ring(Lane& lane);
+
+/// Steps (geometry/primitives/work_limit.h) of unfolding, by point, and those that a file of that
+/// size may ask for: some lanes of a spiral ramp of many storeys, and more in a longer file.
+inline constexpr std::size_t kStepsPerFoldedPoint = 4;
+
+constexpr std::size_t most_folding_steps(std::size_t file_bytes) {
+  return geometry::most_steps(file_bytes / 500);
+}
 
 }  // namespace roadbed::map::elements

@@ -20,6 +20,7 @@ namespace {
 // The lanes of a run of relations, counted from 0, and what there is to say of them.
 struct LaneRun {
   std::vector<Lane> lanes;
+  std::vector<std::size_t> folded;  // of them
   std::vector<Border> left, right;
   std::vector<std::uint32_t> relations;
   std::vector<std::uint32_t> ways;  // that they use
@@ -142,7 +143,7 @@ class LaneBuilder {
     lane.centre.station_m = lane.centre.in_map.stations_m();
     lane.left = lane_line(left, std::move(centre->left_station_m));
     lane.right = lane_line(right, std::move(centre->right_station_m));
-    lane.polygon = lane_ring(lane.left.in_map, lane.right.in_map);
+    if (lay_ring(lane)) built_.folded.push_back(built_.lanes.size());
     add_marks(left_border, lane.left_marks);
     add_marks(right_border, lane.right_marks);
     built_.ways.insert(built_.ways.end(), {*left_way, *right_way});
@@ -176,6 +177,24 @@ class LaneBuilder {
   LaneRun built_;
   std::size_t near_lanelet_ = 0, near_way_ = 0;  // where the last ones were found
 };
+
+// One after the other, so that memory is taken for one lane at a time.
+void unfold_lanes(std::vector<LaneRun>& runs, const Document& document) {
+  geometry::WorkBudget budget(most_folding_steps(document.text.size()));
+  for (LaneRun& run : runs) {
+    for (const std::size_t folded : run.folded) {
+      Lane& lane = run.lanes[folded];
+      if (!budget.spend(kStepsPerFoldedPoint * lane.polygon.size())) {
+        throw InputError({.file = document.name,
+                          .element = "lanelet " + lane.name,
+                          .found = "with those before it more lanelets fold over themselves than "
+                                   "in a map of this size may",
+                          .remedy = "check whether their borders run to and fro"});
+      }
+      unfold_ring(lane);
+    }
+  }
+}
 
 template <typename T>
 void append(std::vector<T>& from, std::vector<T>& to) {
@@ -225,6 +244,7 @@ BuiltLanes build_lanes(Document& document, int threads) {
   in_threads(runs.size(), threads, [&](std::size_t i) {
     runs[i] = LaneBuilder(document, budget).build(i * kRun, std::min(relations, (i + 1) * kRun));
   });
+  unfold_lanes(runs, document);
   BuiltLanes built = joined(std::move(runs), document);
   if (built.lanes.empty()) refuse(document);
   return built;

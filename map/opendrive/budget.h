@@ -30,9 +30,10 @@ class PointBudget {
   static constexpr std::size_t kBytesPerPoint = 160;
 
   explicit PointBudget(std::size_t file_bytes)
-      : left_(geometry::most_bytes_read(file_bytes) / kBytesPerPoint) {}
+      : file_bytes_(file_bytes), left_(geometry::most_bytes_read(file_bytes) / kBytesPerPoint) {}
 
   std::size_t left() const { return left_; }
+  std::size_t file_bytes() const { return file_bytes_; }
 
   /// @throws RoadFault if fewer than `points` are left.
   void spend(std::size_t points, std::size_t road) {
@@ -73,7 +74,7 @@ class PointBudget {
   }
 
   std::atomic<std::size_t>* common_ = nullptr;
-  std::size_t left_ = 0;
+  std::size_t file_bytes_ = 0, left_ = 0;
 };
 
 /// How many lanes the budget of a file can hold: each has two points of two borders at least.

@@ -48,13 +48,15 @@ bool drives_forward(const RoadRecord& road, const LaneRecord& lane) {
 // The lanes of a road, counted from 0, and what there is to say of them.
 struct RoadLanes {
   BuiltLanes built;
+  std::vector<std::size_t> folded;  // of them
   std::vector<ImportDiagnostic> remarks;
 };
 
 class LaneBuilder {
  public:
   LaneBuilder(const Document& document, std::size_t road_index, const geometry::PlanView& plan_view,
-              std::optional<JunctionId> junction, double max_error_m, PointBudget& budget)
+              std::optional<JunctionId> junction, double max_error_m,
+              std::atomic<std::size_t>& budget)
       : road_(document.roads[road_index]),
         road_index_(road_index),
         plan_view_(plan_view),
@@ -66,7 +68,7 @@ class LaneBuilder {
     for (std::size_t section = 0; section < road_.sections.size(); ++section) {
       for (const int sign : {1, -1}) add_side(section, section_side(road_, section, sign));
     }
-    return {std::move(built_), std::move(remarks_)};
+    return {std::move(built_), std::move(folded_), std::move(remarks_)};
   }
 
  private:
@@ -107,6 +109,7 @@ class LaneBuilder {
     lane.attributes = record.attributes;
     if (!record.accesses.empty()) lane.attributes.emplace_back("access", access_in_words(record));
     set_lines(side, lines, index, forward, lane);
+    if (lay_ring(lane)) folded_.push_back(built_.lanes.size());
     built_.ids[{road_index_, section_index, record.id}] = lane.id;
     built_.forward.push_back(forward);
     built_.side_of_lane.push_back(static_cast<std::uint32_t>(built_.side_stations_m.size() - 1));
@@ -132,7 +135,6 @@ class LaneBuilder {
     lane.centre = {std::move(centre_in_map), std::move(centre.z_m), station_m};
     lane.left = lane_line(std::move(left), station_m);
     lane.right = lane_line(std::move(right), station_m);
-    lane.polygon = lane_ring(lane.left.in_map, lane.right.in_map);
   }
 
   // What holds along the lane that was added last: speed limits, and the markings of its borders.
@@ -169,8 +171,9 @@ class LaneBuilder {
   const geometry::PlanView& plan_view_;
   std::optional<JunctionId> junction_;
   double max_error_m_;
-  PointBudget& budget_;
+  PointBudget budget_;  // a part of what all roads share
   BuiltLanes built_;
+  std::vector<std::size_t> folded_;
   std::vector<ImportDiagnostic> remarks_;
 };
 
@@ -189,21 +192,38 @@ void append(BuiltLanes of_road, BuiltLanes& all) {
   for (const std::uint32_t side : of_road.side_of_lane) all.side_of_lane.push_back(side + sides);
 }
 
-// Of each road; the budget is spent by all of them.
+// Of each road.
 std::vector<RoadLanes> lanes_of_roads(const Document& document,
                                       const std::vector<geometry::PlanView>& plan_views,
                                       const std::map<std::string, JunctionId>& junctions,
-                                      double max_error_m, int threads,
-                                      std::atomic<std::size_t>& budget) {
+                                      double max_error_m, int threads, PointBudget& budget) {
   std::vector<RoadLanes> roads(document.roads.size());
+  std::atomic<std::size_t> left = budget.left();
   in_threads(roads.size(), threads, [&](std::size_t i) {
     const auto found = junctions.find(document.roads[i].junction_id);
     const auto junction =
         found == junctions.end() ? std::nullopt : std::optional<JunctionId>(found->second);
-    PointBudget own(budget);
-    roads[i] = LaneBuilder(document, i, plan_views[i], junction, max_error_m, own).build();
+    roads[i] = LaneBuilder(document, i, plan_views[i], junction, max_error_m, left).build();
   });
+  budget.try_to_spend(budget.left() - left);
   return roads;
+}
+
+// One after the other, so that memory is taken for one lane at a time.
+void unfold_lanes(std::vector<RoadLanes>& roads, std::size_t file_bytes) {
+  geometry::WorkBudget budget(most_folding_steps(file_bytes));
+  for (std::size_t i = 0; i < roads.size(); ++i) {
+    for (const std::size_t folded : roads[i].folded) {
+      Lane& lane = roads[i].built.lanes[folded];
+      if (!budget.spend(kStepsPerFoldedPoint * lane.polygon.size())) {
+        throw RoadFault(
+            i,
+            "with those before it more lanes fold over themselves than in a map of this size may",
+            "check its curvatures and widths, or sample it with a larger --max-error");
+      }
+      unfold_ring(lane);
+    }
+  }
 }
 
 }  // namespace
@@ -227,11 +247,7 @@ BuiltLanes build_lanes(const Document& document, const std::vector<geometry::Pla
                        const LoadOptions& options, PointBudget& budget,
                        std::vector<ImportDiagnostic>& remarks) {
   const auto build = [&](int threads) {
-    std::atomic<std::size_t> left = budget.left();
-    auto roads =
-        lanes_of_roads(document, plan_views, junctions, options.max_error_m, threads, left);
-    budget.try_to_spend(budget.left() - left);
-    return roads;
+    return lanes_of_roads(document, plan_views, junctions, options.max_error_m, threads, budget);
   };
   std::vector<RoadLanes> roads;
   try {
@@ -239,6 +255,7 @@ BuiltLanes build_lanes(const Document& document, const std::vector<geometry::Pla
   } catch (const RoadFault&) {
     roads = build(1);  // which of the roads was one too many is told in their order
   }
+  unfold_lanes(roads, budget.file_bytes());
   BuiltLanes built;
   for (RoadLanes& road : roads) {
     append(std::move(road.built), built);

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <numeric>
 #include <optional>
-#include <ranges>
 #include <unordered_set>
 #include <utility>
 
@@ -256,9 +255,8 @@ class DriveSearch {
       bodies[at] = geometry::body_at(node.states[at].pose, q_.vehicle);
       if (touches(bodies[at], step + i + 1)) return false;
     }
-    return std::ranges::all_of(bodies | std::views::reverse, [&](const geometry::Rectangle& body) {
-      return is_on_surface(body);
-    });
+    return std::all_of(bodies.rbegin(), bodies.rend(),
+                       [&](const geometry::Rectangle& body) { return is_on_surface(body); });
   }
 
   bool touches(const geometry::Rectangle& body, int step) const {

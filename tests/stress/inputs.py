@@ -111,6 +111,17 @@ def woven_roads(folder: Path, n: int) -> Path:
     )
 
 
+def winding_roads(folder: Path, n: int) -> Path:
+    """Roads of three turns and more at each of twenty places."""
+    pieces = "".join(
+        f'<geometry s="{100 * k}" x="{100 * k}" y="0" hdg="0" length="100">'
+        '<arc curvature="0.2"/></geometry>'
+        for k in range(20)
+    )
+    roads = (road(i, length=2000, pieces=pieces) for i in range(n))
+    return open_drive(folder, "\n".join(roads))
+
+
 def connecting_roads(folder: Path, n: int) -> Path:
     into = '<link><successor elementType="junction" elementId="9"/></link>'
     link = '<link><predecessor elementType="road" elementId="a" contactPoint="end"/></link>'
@@ -261,6 +272,16 @@ def lanelets_in_a_row(folder: Path, n: int) -> Path:
 
 def same_lanelets(folder: Path, n: int) -> Path:
     return osm(folder, CORNERS + SIDES + "".join(lanelet(100 + i, 11, 12) for i in range(n)))
+
+
+def winding_lanelets(folder: Path, n: int) -> Path:
+    """Lanelets that all have the same two borders, which wind."""
+    turns = [(5 * math.cos(0.1 * i) + 0.01 * i, 5 * math.sin(0.1 * i)) for i in range(300)]
+    nodes = [osm_node(1 + i, *at) for i, at in enumerate(turns)]
+    nodes += [osm_node(1001 + i, 1.4 * x, 1.4 * y) for i, (x, y) in enumerate(turns)]
+    ways = [osm_way(2001 + k, range(1 + 1000 * k, 301 + 1000 * k)) for k in range(2)]
+    lanes = (lanelet(3001 + i, 2001, 2002) for i in range(n))
+    return osm(folder, "".join([*nodes, *ways, *lanes]))
 
 
 def zigzag_border(folder: Path, n: int) -> Path:

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <string>
 
 #include "roadbed/map/files/input_error.h"
@@ -84,6 +85,25 @@ TEST(OpenDriveLimits, ARoadOfEndlessCurvesIsRefused) {
   road.plan_view = pieces;
   tests::expect_read_in_bounds(made_document(made_road(road)),
                                "more points than a map of this size can hold");
+}
+
+// A lane that lies over itself is cut where it does so, which takes time by its points.
+TEST(OpenDriveLimits, ARampOfManyStoreysIsReadAndEndlessWindingRefused) {
+  MadeRoad road;
+  const auto turns = [&](int count, double radius_m, int roads) {
+    road.length_m = 2.0 * std::numbers::pi * radius_m * count;
+    road.plan_view = fmt::format(
+        R"(<geometry s="0" x="0" y="0" hdg="0" length="{}"><arc curvature="{}"/></geometry>)",
+        road.length_m, 1.0 / radius_m);
+    std::string all;
+    for (int i = 0; i < roads; ++i) {
+      road.id = std::to_string(i);
+      all += made_road(road);
+    }
+    return made_document(all);
+  };
+  tests::expect_read_in_bounds(turns(6, 20.0, 1), "read 2 lanes");
+  tests::expect_read_in_bounds(turns(15, 20.0, 10), "fold over themselves");
 }
 
 TEST(OpenDriveLimits, EntityBombsStayWords) {
