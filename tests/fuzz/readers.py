@@ -56,8 +56,14 @@ SOURCES = {
 #: Functions beside them that read nothing.
 WRITERS = re.compile(r"write_|json_of")
 
-#: Folders of tests whose files are seeds, too.
-FOLDERS = {"las": "tests/map/occupancy/laz"}
+#: Other folders whose files are seeds, too: parts of the maps of data/, as `map clip` cuts them.
+FOLDERS = {
+    "edit": "tests/fuzz/pieces",
+    "lanelet2": "tests/fuzz/pieces",
+    "las": "tests/map/occupancy/laz",
+    "open_drive": "tests/fuzz/pieces",
+    "validate": "tests/fuzz/pieces",
+}
 
 #: Suffixes of files of others that are seeds, too, where ROADBED_REAL_DATA is set.
 SUFFIXES = {
@@ -66,7 +72,7 @@ SUFFIXES = {
     "open_drive": (".xodr",),
     "validate": (".osm", ".xodr"),
 }
-MOST_BYTES = 16_384  # of such a file; larger ones are slow
+MOST_BYTES = 4_096  # of such a file and of what is made of it; of larger ones a few a second are read
 
 
 def sources_of(name: str) -> list[Path]:
@@ -87,6 +93,14 @@ def words_of(name: str) -> list[str]:
         for word in literal.findall(line) if len(word) <= 32 and word.count(" ") < 2
     }  # fmt: skip
     return sorted(word.replace("\\n", "\\x0A").replace("\\t", "\\x09") for word in words)
+
+
+def options_of(name: str) -> list[str]:
+    """Return libFuzzer's options for a target.
+
+    Where a target has many features, weighing them takes longer than reading.
+    """
+    return [f"-max_len={MOST_BYTES}", "-entropic=0"] if name in SUFFIXES else []
 
 
 def seeds_of(name: str, build: Path) -> list[str]:
