@@ -8,7 +8,10 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_2_algorithms.h>
 
+#include <algorithm>
 #include <functional>
+#include <tuple>
+#include <utility>
 
 namespace roadbed::geometry::inline polygons::exact {
 namespace {
@@ -39,12 +42,42 @@ using Halfedge = Arrangement::Halfedge_handle;
 Predicates::Point_2 to_predicates(const Vector2d& point) { return {point.x(), point.y()}; }
 Exact::Point_2 to_exact(const Vector2d& point) { return {point.x(), point.y()}; }
 
-void add_edges(const Ring& ring, std::vector<Traits::X_monotone_curve_2>& edges) {
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Exact::Point_2 from = to_exact(ring[i]), to = to_exact(ring[(i + 1) % ring.size()]);
-    const int change = from < to ? 1 : -1;
-    edges.emplace_back(SegmentTraits::X_monotone_curve_2(from, to), change);
+/// An edge from its left end to its right one.
+struct Edge {
+  Vector2d left, right;
+  int change;  ///< of the winding number, upwards
+};
+
+std::vector<Edge> edges_of(const std::vector<Ring>& rings) {
+  std::vector<Edge> edges;
+  for (const Ring& ring : rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Vector2d &from = ring[i], &to = ring[(i + 1) % ring.size()];
+      const bool is_forward = std::pair(from.x(), from.y()) < std::pair(to.x(), to.y());
+      edges.push_back(is_forward ? Edge{from, to, 1} : Edge{to, from, -1});
+    }
   }
+  return edges;
+}
+
+/// Edges that are the same become one, whose change is the sum. What lanes beside each other share
+/// is gone then: the winding number is as large on either side of it.
+std::vector<Edge> summed(std::vector<Edge> edges) {
+  const auto ends = [](const Edge& edge) {
+    return std::tuple(edge.left.x(), edge.left.y(), edge.right.x(), edge.right.y());
+  };
+  std::ranges::sort(edges, {}, ends);
+  std::vector<Edge> sums;
+  for (const Edge& edge : edges) {
+    if (!sums.empty() && ends(sums.back()) == ends(edge)) {
+      sums.back().change += edge.change;
+    } else {
+      if (!sums.empty() && sums.back().change == 0) sums.pop_back();
+      sums.push_back(edge);
+    }
+  }
+  if (!sums.empty() && sums.back().change == 0) sums.pop_back();
+  return sums;
 }
 
 /// By how much the winding number grows from the right of a halfedge to its left.
@@ -142,7 +175,10 @@ bool has_simple_edges(const Ring& ring) {
 
 std::vector<Boundaries> wound_region(const std::vector<Ring>& rings) {
   std::vector<Traits::X_monotone_curve_2> edges;
-  for (const Ring& ring : rings) add_edges(ring, edges);
+  for (const Edge& edge : summed(edges_of(rings))) {
+    edges.emplace_back(SegmentTraits::X_monotone_curve_2(to_exact(edge.left), to_exact(edge.right)),
+                       edge.change);
+  }
   Arrangement arrangement;
   CGAL::insert(arrangement, edges.begin(), edges.end());
   number_windings(arrangement);

@@ -43,8 +43,9 @@ struct Welded {
 ///
 /// No point moves by more than `weld_m`, no edge by more than twice that. Repeated points are
 /// dropped; rings of fewer than three points become empty. 0 only drops repeated points.
-/// O(N log N) for rings whose edges are short against the whole.
+/// O(N log N) for rings few of whose edges are long against the others.
 /// @throws std::invalid_argument if `weld_m` is negative or not finite.
+/// @throws TooMuchWork if edges pass more than twice as many points as there are, and 50,000.
 Welded weld(std::vector<Ring> rings, double weld_m);
 
 }  // namespace roadbed::geometry::polygons

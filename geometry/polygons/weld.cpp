@@ -1,13 +1,18 @@
-#include "roadbed/geometry/polygons/ring.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
+#include <span>
 #include <stdexcept>
 #include <unordered_map>
 #include <utility>
+
+#include "roadbed/geometry/index/box_tree.h"
+#include "roadbed/geometry/index/hilbert.h"
+#include "roadbed/geometry/polygons/ring.h"
+#include "roadbed/geometry/primitives/work_limit.h"
 
 namespace roadbed::geometry::inline polygons {
 namespace {
@@ -40,8 +45,6 @@ class PointGrid {
     const auto found = cells_.find({column, row});
     return found == cells_.end() ? kNone : found->second;
   }
-
-  double cell_m() const { return cell_m_; }
 
  private:
   using Key = std::pair<std::int64_t, std::int64_t>;
@@ -108,17 +111,8 @@ class KeptPoints {
   std::vector<Vector2d> kept_;
 };
 
-/// Cells so large that each holds about one point, were they spread evenly.
-double even_cell_m(const std::vector<Vector2d>& points, double least_m) {
-  if (points.empty()) return least_m;
-  Vector2d low = points.front(), high = points.front();
-  for (const Vector2d& point : points) {
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
-  }
-  const double fraction = 1.0 / std::sqrt(static_cast<double>(points.size()));
-  return std::max(4.0 * least_m, (high - low).norm() * fraction);
-}
+// Points that edges pass: few in maps, whose neighbours share their borders' vertices.
+constexpr std::size_t kFewAdded = 50'000, kFewAddedEach = 2;
 
 struct OnEdge {
   double fraction;  ///< of the edge's length from its start
@@ -137,22 +131,56 @@ void note_move(Vector2d& point, const Vector2d& to, Welded& welded) {
   point = to;
 }
 
-/// Range of the edge's y where its x is within [from_x, to_x].
-std::pair<double, double> y_range(const Vector2d& a, const Vector2d& b, double from_x,
-                                  double to_x) {
-  if (a.x() == b.x()) return std::minmax(a.y(), b.y());
-  const auto y_at = [&](double x) {
-    const double fraction = std::clamp((x - a.x()) / (b.x() - a.x()), 0.0, 1.0);
-    return a.y() + fraction * (b.y() - a.y());
+// Points beside each other along the Hilbert curve through a grid of their ranks by x and by y: a
+// tree of them has small boxes however unevenly they lie. @param sorted  by x
+std::vector<Vector2d> in_hilbert_order(const std::vector<Vector2d>& sorted) {
+  std::vector<std::uint32_t> by_y(sorted.size()), keys(sorted.size());
+  std::iota(by_y.begin(), by_y.end(), 0U);
+  std::ranges::stable_sort(by_y, {}, [&](std::uint32_t i) { return sorted[i].y(); });
+  const auto cell = [&](std::size_t rank) {
+    return static_cast<std::uint32_t>(rank * 65'536 / sorted.size());
   };
-  return std::minmax(y_at(from_x), y_at(to_x));
+  for (std::size_t rank = 0; rank < by_y.size(); ++rank) {
+    keys[by_y[rank]] = hilbert_index(cell(by_y[rank]), cell(rank));
+  }
+  std::vector<Vector2d> ordered;
+  ordered.reserve(sorted.size());
+  for (const std::uint32_t i : order_of_keys(keys)) ordered.push_back(sorted[i]);
+  return ordered;
+}
+
+/// Whether the edge from a to b comes into the box.
+bool enters(const Vector2d& a, const Vector2d& b, const Box& box) {
+  if ((a.cwiseMax(b).array() < box.min().array()).any() ||
+      (a.cwiseMin(b).array() > box.max().array()).any()) {
+    return false;
+  }
+  double from = 0.0, to = 1.0;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double low = box.min()[axis] - a[axis], high = box.max()[axis] - a[axis];
+    const double along = b[axis] - a[axis];
+    if (along == 0.0) {
+      if (low > 0.0 || high < 0.0) return false;
+      continue;
+    }
+    from = std::max(from, std::min(low / along, high / along));
+    to = std::min(to, std::max(low / along, high / along));
+  }
+  return from <= to;
 }
 
 class EdgeSplitter {
  public:
-  EdgeSplitter(const std::vector<Vector2d>& points, double weld_m)
-      : weld_m_(weld_m), grid_(even_cell_m(points, weld_m)) {
-    for (const Vector2d& point : points) grid_.add(point);
+  EdgeSplitter(const std::vector<Vector2d>& sorted, double weld_m)
+      : weld_m_(weld_m), points_(in_hilbert_order(sorted)) {
+    std::vector<Box> leaves;
+    for (std::size_t i = 0; i < points_.size(); i += kInLeaf) {
+      const Box box =
+          box_around(std::span(points_).subspan(i, std::min(kInLeaf, points_.size() - i)));
+      // Twice as far around as asked for, so that no rounding matters.
+      leaves.emplace_back(box.min().array() - 2.0 * weld_m, box.max().array() + 2.0 * weld_m);
+    }
+    if (!leaves.empty()) levels_ = packed_levels(std::move(leaves), kChildren);
   }
 
   Ring split(const Ring& ring, Welded& welded) const {
@@ -172,22 +200,27 @@ class EdgeSplitter {
   /// Points within the weld distance of the edge's inside, in its direction.
   std::vector<OnEdge> passed(const Vector2d& a, const Vector2d& b) const {
     std::vector<OnEdge> found;
-    const auto [low_x, high_x] = std::minmax(a.x(), b.x());
-    const std::int64_t last = grid_.index(high_x + weld_m_);
-    for (std::int64_t column = grid_.index(low_x - weld_m_); column <= last; ++column) {
-      const double from_x = static_cast<double>(column) * grid_.cell_m();
-      const auto [low_y, high_y] =
-          y_range(a, b, from_x - weld_m_, from_x + grid_.cell_m() + weld_m_);
-      const std::int64_t top = grid_.index(high_y + weld_m_);
-      for (std::int64_t row = grid_.index(low_y - weld_m_); row <= top; ++row) {
-        for (const Vector2d& point : grid_.cell(column, row)) add_if_near(a, b, point, found);
-      }
-    }
+    if (!levels_.empty()) look_in(levels_.size() - 1, 0, a, b, found);
     std::sort(found.begin(), found.end(), [](const OnEdge& one, const OnEdge& other) {
       return one.fraction < other.fraction ||
              (one.fraction == other.fraction && before(one.point, other.point));
     });
     return found;
+  }
+
+  void look_in(std::size_t level, std::size_t node, const Vector2d& a, const Vector2d& b,
+               std::vector<OnEdge>& found) const {
+    if (!enters(a, b, levels_[level][node])) return;
+    const std::size_t width = level > 0 ? kChildren : kInLeaf;
+    const std::size_t size = level > 0 ? levels_[level - 1].size() : points_.size();
+    const std::size_t end = std::min(size, (node + 1) * width);
+    for (std::size_t i = node * width; i < end; ++i) {
+      if (level > 0) {
+        look_in(level - 1, i, a, b, found);
+      } else {
+        add_if_near(a, b, points_[i], found);
+      }
+    }
   }
 
   void add_if_near(const Vector2d& a, const Vector2d& b, const Vector2d& point,
@@ -200,8 +233,11 @@ class EdgeSplitter {
     if (off_m <= weld_m_) found.push_back({fraction, point, off_m});
   }
 
+  static constexpr std::size_t kInLeaf = 8, kChildren = 8;
+
   double weld_m_;
-  PointGrid grid_;
+  std::vector<Vector2d> points_;
+  std::vector<std::vector<Box>> levels_;  // around runs of points, the root last
 };
 
 }  // namespace
@@ -216,10 +252,16 @@ Welded weld(std::vector<Ring> rings, double weld_m) {
   if (weld_m > 0.0) {
     const KeptPoints kept(sorted_points(rings), weld_m);
     const EdgeSplitter splitter(kept.points(), weld_m);
+    WorkBudget added(kFewAdded + kFewAddedEach * kept.points().size());
     for (Ring& ring : rings) {
       for (Vector2d& point : ring) note_move(point, *kept.find(point), welded);
       drop_repeated(ring);
+      const std::size_t before = ring.size();
       ring = splitter.split(ring, welded);
+      if (!added.spend(ring.size() - before)) {
+        throw TooMuchWork(
+            "so many edges nearly lie on others that their outline has endless corners");
+      }
     }
   }
   welded.rings = std::move(rings);

@@ -148,6 +148,7 @@ CASES = [
     Case("shifted roads", inputs.shifted_roads, 10, map_commands("20,-1.7") + EDIT),
     Case("roads through one place", inputs.crossing_roads, 10, map_commands("20,0") + EDIT),
     Case("woven roads", inputs.woven_roads, 10, map_commands("20,5") + EDIT),
+    Case("widening roads", inputs.widening_roads, 1, AREA),
     Case("winding roads", inputs.winding_roads, 1, map_commands("20,5") + EDIT),
     Case("connecting roads", inputs.connecting_roads, 10, map_commands("-50,-1.7") + EDIT),
     Case("lanes in a section", inputs.lanes_in_a_section, 10, LANES_ROUTES + EDIT),

@@ -122,6 +122,13 @@ def winding_roads(folder: Path, n: int) -> Path:
     return open_drive(folder, "\n".join(roads))
 
 
+def widening_roads(folder: Path, n: int) -> Path:
+    """Lanes that are metres wide at one end and a thousand kilometres at the other."""
+    lane = LANE.replace('d="0"', 'd="1"')
+    roads = (road(i, y=3 * i, length=110, sections=lanes_section(lane)) for i in range(n))
+    return open_drive(folder, "\n".join(roads))
+
+
 def connecting_roads(folder: Path, n: int) -> Path:
     into = '<link><successor elementType="junction" elementId="9"/></link>'
     link = '<link><predecessor elementType="road" elementId="a" contactPoint="end"/></link>'

@@ -52,6 +52,54 @@ TEST(Weld, GivesAnEdgeThePointsThatItPassesNearlyInItsDirection) {
   EXPECT_EQ(rings[0], expected);
 }
 
+// Between edges of centimetres and of thousands of kilometres; some points lie just beside edges.
+Ring uneven_ring(std::mt19937& random) {
+  std::uniform_real_distribution<double> power(-1.0, 6.0), angle(0.0, 6.28), fraction(0.1, 0.9);
+  Ring ring;
+  for (int i = 0; i < 60; ++i) {
+    const double radius_m = std::pow(10.0, power(random)), at = angle(random);
+    ring.emplace_back(radius_m * std::cos(at), radius_m * std::sin(at));
+  }
+  const Ring corners = ring;
+  for (std::size_t i = 0; i + 1 < corners.size(); i += 3) {
+    const Vector2d along = corners[i + 1] - corners[i];
+    const Vector2d left = Vector2d(-along.y(), along.x()).normalized();
+    ring.emplace_back(corners[i] + fraction(random) * along + (i % 2 == 0 ? 9e-4 : 1.1e-3) * left);
+  }
+  return ring;
+}
+
+// What edges pass, by looking at every point. @pre no two points are within the distance.
+Ring split_slowly(const Ring& ring, double weld_m) {
+  Ring result;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vector2d a = ring[i], along = ring[(i + 1) % ring.size()] - a;
+    result.push_back(a);
+    std::vector<std::pair<double, Vector2d>> passed;
+    for (const Vector2d& point : ring) {
+      const double fraction = (point - a).dot(along) / along.squaredNorm();
+      const bool is_end = point == a || point == ring[(i + 1) % ring.size()];
+      if (is_end || fraction <= 0.0 || fraction >= 1.0) continue;
+      if ((a + fraction * along - point).norm() <= weld_m) passed.emplace_back(fraction, point);
+    }
+    std::ranges::sort(passed, {}, [](const auto& one) { return one.first; });
+    for (const auto& [fraction, point] : passed) result.push_back(point);
+  }
+  return result;
+}
+
+TEST(Weld, FindsThePassedPointsHoweverUnevenlyTheyLie) {
+  std::mt19937 random(5);
+  std::size_t added = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Ring ring = uneven_ring(random);
+    const Ring welded = weld({ring}, 1e-3).rings.front();
+    ASSERT_EQ(welded, split_slowly(ring, 1e-3)) << i;
+    added += welded.size() - ring.size();
+  }
+  EXPECT_GT(added, 1'500u);
+}
+
 TEST(Weld, WithZeroOnlyDropsRepeatedPoints) {
   const auto rings =
       weld({{{0, 0}, {0, 0}, {1, 0}, {1, 1e-9}, {0, 0}}, {{0, 0}, {1, 1}}}, 0.0).rings;
