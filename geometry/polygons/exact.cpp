@@ -72,11 +72,10 @@ std::vector<Edge> summed(std::vector<Edge> edges) {
     if (!sums.empty() && ends(sums.back()) == ends(edge)) {
       sums.back().change += edge.change;
     } else {
-      if (!sums.empty() && sums.back().change == 0) sums.pop_back();
       sums.push_back(edge);
     }
   }
-  if (!sums.empty() && sums.back().change == 0) sums.pop_back();
+  std::erase_if(sums, [](const Edge& edge) { return edge.change == 0; });
   return sums;
 }
 

@@ -187,8 +187,9 @@ void unfold_lanes(std::vector<LaneRun>& runs, const Document& document) {
       if (!budget.spend(kStepsPerFoldedPoint * lane.polygon.size())) {
         throw InputError({.file = document.name,
                           .element = "lanelet " + lane.name,
-                          .found = "with those before it more lanelets fold over themselves than "
-                                   "in a map of this size may",
+                          .found =
+                              "it and those before it fold over themselves at more points than "
+                              "a map of this size may",
                           .remedy = "check whether their borders run to and fro"});
       }
       unfold_ring(lane);

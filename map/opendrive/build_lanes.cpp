@@ -216,10 +216,10 @@ void unfold_lanes(std::vector<RoadLanes>& roads, std::size_t file_bytes) {
     for (const std::size_t folded : roads[i].folded) {
       Lane& lane = roads[i].built.lanes[folded];
       if (!budget.spend(kStepsPerFoldedPoint * lane.polygon.size())) {
-        throw RoadFault(
-            i,
-            "with those before it more lanes fold over themselves than in a map of this size may",
-            "check its curvatures and widths, or sample it with a larger --max-error");
+        throw RoadFault(i,
+                        "its lanes and those before it fold over themselves at more points than a "
+                        "map of this size may",
+                        "check its curvatures and widths, or sample it with a larger --max-error");
       }
       unfold_ring(lane);
     }

@@ -244,7 +244,10 @@ std::vector<std::reference_wrapper<const LaneRecord>> LaneSection::listed() cons
 
 std::size_t count_lanes(pugi::xml_node lanes) {
   std::size_t count = 0;
-  find_lane(lanes, [&](pugi::xml_node) { return ++count == 0; });
+  find_lane(lanes, [&](pugi::xml_node) {
+    ++count;
+    return false;
+  });
   return count;
 }
 

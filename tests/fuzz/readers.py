@@ -56,13 +56,12 @@ SOURCES = {
 #: Functions beside them that read nothing.
 WRITERS = re.compile(r"write_|json_of")
 
-#: Other folders whose files are seeds, too: parts of the maps of data/, as `map clip` cuts them.
+#: Other folders whose files are seeds, too.
 FOLDERS = {
-    "edit": "tests/fuzz/pieces",
-    "lanelet2": "tests/fuzz/pieces",
+    "edit": "tests/fuzz/corpus/validate",
+    "lanelet2": "tests/fuzz/corpus/validate",
     "las": "tests/map/occupancy/laz",
-    "open_drive": "tests/fuzz/pieces",
-    "validate": "tests/fuzz/pieces",
+    "open_drive": "tests/fuzz/corpus/validate",
 }
 
 #: Suffixes of files of others that are seeds, too, where ROADBED_REAL_DATA is set.
