@@ -60,7 +60,6 @@ WRITERS = re.compile(r"write_|json_of")
 FOLDERS = {
     "edit": "tests/fuzz/corpus/validate",
     "lanelet2": "tests/fuzz/corpus/validate",
-    "las": "tests/map/occupancy/laz",
     "open_drive": "tests/fuzz/corpus/validate",
 }
 
@@ -99,7 +98,9 @@ def options_of(name: str) -> list[str]:
 
     Where a target has many features, weighing them takes longer than reading.
     """
-    return [f"-max_len={MOST_BYTES}", "-entropic=0"] if name in SUFFIXES else []
+    if name in SUFFIXES:
+        return [f"-max_len={MOST_BYTES}", "-entropic=0"]
+    return ["-entropic=0"] if name == "las" else []
 
 
 def seeds_of(name: str, build: Path) -> list[str]:

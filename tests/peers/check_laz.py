@@ -2,11 +2,12 @@
 
 Usage: check_laz.py ROADBED FILE.laz…
        check_laz.py --write FOLDER
+       check_laz.py --seeds FOLDER
 
 Besides the files, 14 are made, of every point format that laspy packs, with and without extra
 bytes, of more points than a chunk has. --write makes the small ones that the tests of
 map/occupancy/laz read, whose coordinates follow a formula: format_N.laz, and chunks_N.laz of
-several chunks.
+several chunks. --seeds makes packed_N.laz of few points, which the fuzz target of LAS begins with.
 """
 import io
 import json
@@ -86,6 +87,15 @@ def write(folder):
             in_chunks(made(point_format, formula(300), False), 70))
 
 
+def write_seeds(folder):
+    for point_format in FORMATS:
+        (folder / f"packed_{point_format}.laz").write_bytes(
+            in_chunks(made(point_format, formula(20), point_format in (3, 7)), 7))
+    for point_format in WAVES:
+        made(point_format, formula(20), False).write(
+            str(folder / f"packed_{point_format}.laz"), laz_backend=laspy.LazBackend.Laszip)
+
+
 def in_chunks(cloud, points):
     """The bytes of a LAZ file whose chunks have so many points, the last one fewer."""
     file = io.BytesIO()
@@ -127,8 +137,8 @@ def what_is_read(program, cloud, folder):
 
 
 def main():
-    if sys.argv[1] == "--write":
-        return write(pathlib.Path(sys.argv[2]))
+    if sys.argv[1] in ("--write", "--seeds"):
+        return {"--write": write, "--seeds": write_seeds}[sys.argv[1]](pathlib.Path(sys.argv[2]))
     program, files = sys.argv[1], [pathlib.Path(file) for file in sys.argv[2:]]
     same, wrong, unread = 0, [], []
     with tempfile.TemporaryDirectory() as name:
