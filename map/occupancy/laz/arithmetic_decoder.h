@@ -75,6 +75,8 @@ class ArithmeticDecoder {
 
   /// Bytes taken so far.
   std::size_t used() const { return at_; }
+  /// Goes past the end: what was decoded is nothing that an encoder writes.
+  void break_off() { at_ = bytes_.size() + 1; }
   bool is_past_end() const { return at_ > bytes_.size(); }
 
  private:

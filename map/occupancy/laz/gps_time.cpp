@@ -31,12 +31,14 @@ class GpsTime final : public SteppedItem<GpsTime> {
                                  kFull = kSame + 1, kFirst = kFull + 4;
 
   ROADBED_INLINE void kind(ArithmeticDecoder& from) {
-    do {
+    for (std::size_t switches = 0; switches < steps_.size(); ++switches) {
       kind_ = steps_[sequence_].last == 0 ? kind_after_none(from.symbol(after_none_))
                                           : from.symbol(multiple_);
       if (kind_ <= kFull || kind_ == kFirst) return;
       sequence_ = (sequence_ + kind_ - kFull) % steps_.size();
-    } while (!from.is_past_end());
+    }
+    kind_ = kSame;  // none is that far away: tens of thousands of switches would fit into a byte
+    from.break_off();
   }
 
   // Of 0 none, 1 some, 2 all of it, then another sequence.

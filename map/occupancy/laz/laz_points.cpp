@@ -125,7 +125,7 @@ class Unpacking {
 
   [[noreturn]] void refuse_end() const {
     refuse(name_, fmt::format("byte {}", std::min(at_, file_.size())), "points",
-           fmt::format("the file ends {} points before the last", left_), "all of them",
+           fmt::format("the file breaks off {} points before the last", left_), "all of them",
            "get the whole file");
   }
 

@@ -120,6 +120,13 @@ TEST(Laz, TakesNoMoreOfATableThanItsPointsHaveChunks) {
   expect_formula(parse_point_cloud(bytes, "a.laz"));
 }
 
+/// Times that switch between sequences for ever: each bit of a megabyte is thousands of switches.
+TEST(Laz, RefusesTimesThatNeverEnd) {
+  std::string bytes = packed(1);
+  bytes.resize(integer_at<std::uint32_t>(bytes, 96) + 8 + 28);  // with the first point
+  EXPECT_THAT(refusal(bytes + std::string(1'000'000, '\xff')), HasSubstr("breaks off 299 points"));
+}
+
 TEST(Laz, RefusesWhatLaszipDoesNotKnow) {
   const std::string bytes = packed(0);
   const std::size_t record = bytes.find("laszip encoded") - 2 + 54;
