@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/elements/lane.h"
 
 namespace roadbed::map::inline elements {
@@ -61,6 +62,7 @@ struct LaneQuery {
   double radius_m = std::numeric_limits<double>::infinity();    ///< farthest lane
   std::size_t count = std::numeric_limits<std::size_t>::max();  ///< most lanes
   LaneTypes types = LaneTypes::all();
+  geometry::WorkBudget* budget = nullptr;  ///< a step of it is each piece of a lane looked at
 };
 
 }  // namespace roadbed::map::elements

@@ -130,6 +130,7 @@ class Search {
       return key(a) < key(b);
     });
     if (scratch_.found.size() > query_.count) scratch_.found.resize(query_.count);
+    if (query_.budget) query_.budget->spend(looked_at());
   }
 
   /// Whether run() would find any lane.
@@ -145,6 +146,15 @@ class Search {
     if (count_inside() >= query_.count) return;
     for (const Cell* cell : scratch_.around) measure(*cell);
     visit_beside();
+  }
+
+  std::size_t looked_at() const {
+    constexpr std::size_t at_once = 16;  // boxes of a lane's pieces, beside a piece
+    std::size_t pieces = scratch_.around.size();
+    for (const LaneMatch& match : scratch_.found) {
+      pieces += data_.lanes[match.place.lane.index].cells / at_once;
+    }
+    return pieces;
   }
 
   bool is_within(const Candidate& candidate) const {

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "roadbed/geometry/primitives/work_limit.h"
+#include "roadbed/map/index/road_map_index.h"
 #include "roadbed/map/validation/validate.h"
 
 namespace roadbed::map::validation {
@@ -15,6 +16,7 @@ constexpr double kStep = 4.0;  // [m] between places along a centreline that are
 constexpr int kMostSteps = 2000;
 // Of a whole map, and a lane of it on average: a file of a few lines can hold roads without end.
 constexpr double kMostPlaces = 1e5, kMostPlacesOfALane = 200.0;
+constexpr double kMostPieces = 32.0;  // of lanes, at a place on average
 
 double elevation_m(const Lane& lane, double s_m) {
   const auto& stations = lane.centre.station_m;
@@ -25,15 +27,13 @@ double elevation_m(const Lane& lane, double s_m) {
 }
 
 /// Lanes of other roads, outside junctions and at the same level, whose middle third the place is
-/// in. Spends what more lanes are there than lie upon each other anywhere.
+/// in.
 std::vector<LaneId> lanes_under(const RoadMap& road_map, const Lane& lane, double s_m,
                                 geometry::WorkBudget& budget) {
   constexpr double kSameLevel = 2.0;  // [m]
-  constexpr std::size_t kStacked = 16;
+  const LaneQuery query{.radius_m = 0.0, .types = LaneTypes::drivable(), .budget = &budget};
   std::vector<LaneId> found;
-  const auto matches = road_map.locate(lane.centre.in_map.at(s_m), 0.0, true);
-  budget.spend(matches.size() - std::min(matches.size(), kStacked));
-  for (const LaneMatch& match : matches) {
+  for (const LaneMatch& match : road_map.index().lanes.near(lane.centre.in_map.at(s_m), query)) {
     const Lane& other = road_map.lane(match.place.lane);
     if (other.junction || !other.road || other.road == lane.road) continue;
     const bool deep = std::abs(match.place.d_m) < other.width_m(match.place.s_m) / 3.0;
@@ -65,6 +65,8 @@ bool is_compared(const Lane& lane) {
   return is_drivable(lane.type) && !lane.junction && lane.road.has_value();
 }
 
+double most_places(double lanes) { return std::max(kMostPlaces, lanes * kMostPlacesOfALane); }
+
 /// Between places that are looked at.
 double step_for(const RoadMap& road_map) {
   double length_m = 0.0, lanes = 0.0;
@@ -73,27 +75,40 @@ double step_for(const RoadMap& road_map) {
     length_m += std::min(lane.length_m(), kMostSteps * kStep);
     lanes += 1.0;
   }
-  return std::max(kStep, length_m / std::max(kMostPlaces, lanes * kMostPlacesOfALane));
+  return std::max(kStep, length_m / most_places(lanes));
 }
 
+struct Overlap {
+  const Lane* lane;
+  LaneId other;
+  double length_m;
+};
+
 void overlapping_lanes(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
-  geometry::WorkBudget budget(geometry::most_steps(road_map.lanes().size()));
+  const auto lanes = static_cast<double>(road_map.lanes().size());
+  geometry::WorkBudget budget(static_cast<std::size_t>(kMostPieces * most_places(lanes)));
   const double step_m = step_for(road_map);
+  const auto middle = [](const Lane& lane) {
+    return lane.pose_at(0.5 * lane.length_m()).position();
+  };
+  std::vector<Overlap> found;
   for (const Lane& lane : road_map.lanes()) {
     if (!is_compared(lane)) continue;
-    if (budget.is_spent()) {
-      report.add("lane " + lane.name, lane.pose_at(0.5 * lane.length_m()).position(),
+    if (budget.is_spent()) {  // first, as the last ones of many are only counted
+      report.add("lane " + lane.name, middle(lane),
                  "this lane and those behind it in the file were not compared: too many lie on "
                  "each other; remove those that stand there twice, then validate again");
-      return;
+      break;
     }
     for (const auto& [other, length_m] : overlaps_m(road_map, lane, step_m, budget)) {
-      if (length_m < options.min_overlap_m) continue;
-      report.add("lane " + lane.name, lane.pose_at(0.5 * lane.length_m()).position(),
-                 fmt::format("runs inside lane {} for {:.1f} m, outside of any junction; move one "
-                             "of their roads, or put them into a junction",
-                             road_map.lane(other).name, length_m));
+      if (length_m >= options.min_overlap_m) found.push_back({&lane, other, length_m});
     }
+  }
+  for (const Overlap& overlap : found) {
+    report.add("lane " + overlap.lane->name, middle(*overlap.lane),
+               fmt::format("runs inside lane {} for {:.1f} m, outside of any junction; move one "
+                           "of their roads, or put them into a junction",
+                           road_map.lane(overlap.other).name, overlap.length_m));
   }
 }
 

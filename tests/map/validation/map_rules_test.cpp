@@ -441,6 +441,17 @@ TEST(MapRules, TakeTheCornersOfALineDrawnByFewPointsForNoKink) {
   EXPECT_EQ(kinks(1), 1u);
 }
 
+/// Each place on one of them would have to be looked for in all others.
+TEST(MapRules, StopComparingLanesThatAllLieOnEachOther) {
+  MadeMap made;
+  for (int i = 0; i < 400; ++i) {
+    made.add_lane(made.add_road(std::to_string(i)), "-1", {{0, 3}, {2000, 3}}, {{0, 0}, {2000, 0}});
+  }
+  const auto findings = of_rule(made, "geometry.overlap");
+  ASSERT_FALSE(findings.empty());
+  EXPECT_THAT(findings.front().message, testing::HasSubstr("were not compared"));
+}
+
 TEST(MapRules, TakeNoBridgeForAnOverlap) {
   MadeMap made = faultless();
   const LaneId bridge =
