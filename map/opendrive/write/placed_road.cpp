@@ -64,7 +64,11 @@ class RoadPlacer {
       }
     }
     targets_.push_back(target(reference_along(road_map, road, border), ends));
-    if (!road.source) targets_.push_back(middle(ends));
+    if (road.source) return;
+    targets_.push_back(middle(ends));
+    for (const RoadBorder* edge : {&borders_.front().front(), &borders_.front().back()}) {
+      targets_.push_back(target(*edge, ends));
+    }
   }
 
   PlacedRoad place(double most_m) {
@@ -174,8 +178,9 @@ class RoadPlacer {
     return s_m;
   }
 
-  // The first sound one of: along the border, along the middle, both ever smoother. Else the one
-  // with the least fault, those first that have the least along coarse chords.
+  // The first sound one of: along the border, the middle, either edge (nothing folds inside of the
+  // inner one in a bend), each ever smoother. Else the one with the least fault, those first that
+  // have the least along coarse chords.
   void choose_reference(double most_m) {
     std::vector<Try> tries;
     for (const ReferenceTarget& target : targets_) {

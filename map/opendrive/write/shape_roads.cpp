@@ -16,6 +16,7 @@ constexpr int kMostRounds = 4, kMostPlans = 3;
 constexpr double kParting_m = 0.2;   // fault of a road with several lanes that is too much
 constexpr double kHopeless_m = 1.0;  // of one with a single lane
 constexpr double kGain_m = 1e-3;     // that makes another line worth while
+constexpr double kGap_m = 5e-3;      // between borders at a joint, which is let be
 
 /// Lanes with the border that a reference line follows and the lines across their ends: all that a
 /// road's shape depends on.
@@ -35,14 +36,19 @@ class RoadsPlacer {
         memory_(memory),
         borders_(reference_borders(road_map, plan)),
         lines_(end_lines(road_map, plan)),
+        ends_(find_end_roles(road_map, plan)),
         chosen_(lines_.choices.size(), 0),
-        roads_of_(lines_.choices.size()) {
+        roads_of_(lines_.choices.size()),
+        joints_of_(lines_.choices.size()) {
     for (std::uint32_t road = 0; road < plan.roads.size(); ++road) {
       roads_.push_back(place(road));
       for (const std::uint32_t end : {2 * road, 2 * road + 1}) {
         auto& roads = roads_of_[lines_.group_of_end[end]];
         if (roads.empty() || roads.back() != road) roads.push_back(road);
       }
+    }
+    for (const auto& joint : ends_.joints) {
+      joints_of_[lines_.group_of_end[joint.first.first]].push_back(&joint);
     }
   }
 
@@ -110,9 +116,35 @@ class RoadsPlacer {
     return fault_m;
   }
 
+  // How far borders have to be led at the ends of a group.
+  double gap_m(std::size_t group) const {
+    double sum_m = 0.0;
+    for (const EndJoints::value_type* joint : joints_of_[group]) {
+      const double gap_m = joint_gap_m(plan_, *joint, roads_);
+      if (gap_m > kGap_m) sum_m += gap_m;
+    }
+    return sum_m;
+  }
+
+  // The roads of a group with the line chosen now; returns those before.
+  std::vector<PlacedRoad> place_group(std::size_t group) {
+    std::vector<PlacedRoad> before;
+    for (const std::uint32_t road : roads_of_[group]) {
+      before.push_back(std::exchange(roads_[road], place(road)));
+    }
+    return before;
+  }
+
+  void put_back(std::size_t group, std::vector<PlacedRoad> roads) {
+    for (std::size_t i = 0; i < roads.size(); ++i) {
+      roads_[roads_of_[group][i]] = std::move(roads[i]);
+    }
+  }
+
+  // Takes the line with the least faults and gaps.
   bool improve(std::size_t group) {
     const auto& roads = roads_of_[group];
-    double least_m = 0.0;
+    double least_m = gap_m(group);
     for (const std::uint32_t road : roads) least_m += roads_[road].fault_m;
     const std::size_t before = chosen_[group];
     std::size_t best = before;
@@ -125,13 +157,17 @@ class RoadsPlacer {
         sum_m += fault_m(road, least_m - kGain_m - sum_m + 1e-9);
       }
       if (sum_m > least_m - kGain_m) continue;
+      auto roads_before = place_group(group);
+      sum_m += gap_m(group);
+      if (sum_m > least_m - kGain_m) {
+        put_back(group, std::move(roads_before));
+        continue;
+      }
       least_m = sum_m;
       best = i;
     }
     chosen_[group] = best;
-    if (best == before) return false;
-    for (const std::uint32_t road : roads) roads_[road] = place(road);
-    return true;
+    return best != before;
   }
 
   const RoadMap& road_map_;
@@ -139,8 +175,10 @@ class RoadsPlacer {
   Memory& memory_;
   std::vector<std::size_t> borders_;
   EndLines lines_;
-  std::vector<std::size_t> chosen_;                   // by group of ends
-  std::vector<std::vector<std::uint32_t>> roads_of_;  // likewise
+  EndRoles ends_;
+  std::vector<std::size_t> chosen_;                                   // by group of ends
+  std::vector<std::vector<std::uint32_t>> roads_of_;                  // likewise
+  std::vector<std::vector<const EndJoints::value_type*>> joints_of_;  // likewise
   std::vector<PlacedRoad> roads_;
 };
 
