@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string_view>
 #include <tuple>
 
@@ -87,6 +88,18 @@ std::vector<PlaceCandidate> match_place(const map::RoadMap& road_map, const Eige
   }
   candidates.front().verdict = MatchVerdict::chosen;
   return candidates;
+}
+
+RoutePlace route_place_of(const std::vector<PlaceCandidate>& candidates) {
+  constexpr double kSame_m = 0.01;
+  const PlaceCandidate& chosen = candidates.front();
+  RoutePlace place(chosen.place, chosen.sense);
+  for (const PlaceCandidate& other : std::span(candidates).subspan(1)) {
+    const bool is_same = other.verdict == MatchVerdict::possible && other.sense == chosen.sense &&
+                         other.misfit_m <= chosen.misfit_m + kSame_m;
+    if (is_same) place.or_on.push_back(other.place);
+  }
+  return place;
 }
 
 std::vector<RoutePlace> places_under(const map::RoadMap& road_map,

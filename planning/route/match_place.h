@@ -36,7 +36,7 @@ struct MatchOptions {
 /// Lanes that a point may belong to, the chosen one first. A lane may be used by the participant,
 /// is within reach and, where a heading is given and any lane fits it, not against it by 90° or
 /// more; of those the one with the least misfit is chosen, of equal ones the one with the lowest
-/// id:
+/// id (a route takes any of them, see route_place_of):
 ///
 ///     misfit = distance to the lane + 2 m/rad · |turn| + 0.1 · |offset from the centreline|
 ///
@@ -46,6 +46,10 @@ struct MatchOptions {
 std::vector<PlaceCandidate> match_place(const map::RoadMap& road_map, const Eigen::Vector2d& in_map,
                                         std::optional<double> heading_rad,
                                         const MatchOptions& options = {});
+
+/// The place that such lanes mean to a route: the chosen one, or any other that fits as well within
+/// a centimetre. @pre the first one is chosen
+RoutePlace route_place_of(const std::vector<PlaceCandidate>& candidates);
 
 /// Where a vehicle that stands on lanes of the map may set off: on each lane under it that it heads
 /// along, within 20 degrees, the one with the least misfit first.

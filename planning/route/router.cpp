@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kStationSlack_m = 1e-6;
 
-void check(const map::RoadMap& road_map, const map::LanePlace& place) {
+void check_on_lane(const map::RoadMap& road_map, const map::LanePlace& place) {
   if (place.lane.index >= road_map.lanes().size()) {
     throw std::invalid_argument("Router: a place names no lane of the map");
   }
@@ -24,6 +24,10 @@ void check(const map::RoadMap& road_map, const map::LanePlace& place) {
     throw std::invalid_argument(fmt::format("Router: a place is at {} m of lane {}, {} m long",
                                             place.s_m, lane.name, lane.length_m()));
   }
+}
+
+void check(const map::RoadMap& road_map, const RoutePlace& place) {
+  for (const RoutePlace& one : each_lane_of(place)) check_on_lane(road_map, one);
 }
 
 void check(const map::RoadMap& road_map, const BlockedStretch& stretch) {
@@ -160,10 +164,16 @@ std::optional<Partial> cheapest(RouteSolver& solver, const std::vector<Partial>&
 
 // A place that is passed, as it may be driven through: the way goes on as it came.
 std::vector<RoutePlace> as_driven(const RouteNetwork& network, const RoutePlace& place) {
-  if (network.lanes[place.lane.index].contraflow_twin == kNoLane || place.sense != Sense::either) {
-    return {place};
+  std::vector<RoutePlace> driven;
+  for (const RoutePlace& one : each_lane_of(place)) {
+    const bool is_one_way = network.lanes[one.lane.index].contraflow_twin == kNoLane;
+    if (is_one_way || one.sense != Sense::either) {
+      driven.push_back(one);
+    } else {
+      for (const Sense sense : {Sense::along, Sense::against}) driven.emplace_back(one, sense);
+    }
   }
-  return {{place, Sense::along}, {place, Sense::against}};
+  return driven;
 }
 
 std::string place_name(std::size_t index, std::size_t count) {
@@ -215,11 +225,14 @@ void Router::prepare() { solver_->prepare(); }
 Router::Router(Router&&) noexcept = default;
 Router& Router::operator=(Router&&) noexcept = default;
 
-bool Router::is_fit(const map::LanePlace& place) const {
-  return solver_->model().may_enter(place.lane.index);
+bool Router::is_fit(const RoutePlace& place) const {
+  return std::ranges::any_of(each_lane_of(place), [this](const RoutePlace& one) {
+    return solver_->model().may_enter(one.lane.index);
+  });
 }
 
-std::string Router::unfit(const map::LanePlace& place, const std::string& what) const {
+std::string Router::unfit(const RoutePlace& place, const std::string& what) const {
+  if (is_fit(place)) return "";
   const map::Lane& lane = road_map_->lane(place.lane);
   const RoutingCostModel& model = solver_->model();
   if (!model.may_be_used(place.lane.index)) {

@@ -64,11 +64,11 @@ class Router {
   /// A route of a way that was found elsewhere for the same options.
   Route route_along(const Way& way) const;
 
-  /// Whether the place can be part of a route.
-  bool is_fit(const map::LanePlace& place) const;
+  /// Whether the place can be part of a route, on any of its lanes.
+  bool is_fit(const RoutePlace& place) const;
 
   /// Why it cannot; empty if it can.
-  std::string unfit(const map::LanePlace& place, const std::string& what) const;
+  std::string unfit(const RoutePlace& place, const std::string& what) const;
 
   const map::RoadMap& road_map() const { return *road_map_; }
   const RouteOptions& options() const { return options_; }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -160,6 +161,15 @@ Place at_point(const map::RoadMap& road_map, const PointPlace& point, map::Parti
 }
 
 }  // namespace
+
+void Place::choose(map::LaneId lane) {
+  const auto taken = std::ranges::find(
+      candidates, lane, [](const planning::PlaceCandidate& one) { return one.place.lane; });
+  if (taken == candidates.end() || taken == candidates.begin()) return;
+  std::swap(taken->verdict, candidates.front().verdict);
+  std::rotate(candidates.begin(), taken, taken + 1);
+  on_lane = candidates.front().place;
+}
 
 std::string place_syntax_fault(const std::string& text) {
   if (text.starts_with(kLanePrefix)) {

@@ -31,7 +31,13 @@ struct Place {
   planning::Sense sense = planning::Sense::either;   ///< which way, on a lane of both directions
   std::vector<planning::PlaceCandidate> candidates;  ///< of a point; the chosen one first
 
-  planning::RoutePlace for_route() const { return {on_lane, sense}; }
+  planning::RoutePlace for_route() const {
+    return candidates.empty() ? planning::RoutePlace(on_lane, sense)
+                              : planning::route_place_of(candidates);
+  }
+
+  /// Takes the candidate that a route has taken.
+  void choose(map::LaneId lane);
 };
 
 /// What is wrong with the writing of a place, empty if nothing is. Needs no map.

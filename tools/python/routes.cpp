@@ -125,7 +125,7 @@ Reach reach(const Map& map, nb::handle start, std::optional<double> within_s,
   const nb::gil_scoped_release released;
   const std::lock_guard lock(entry->mutex);
   const Place from = asked.on(*map.road_map, entry->router.options().participant);
-  const std::string fault = entry->router.unfit(from.on_lane, "start");
+  const std::string fault = entry->router.unfit(from.for_route(), "start");
   if (!fault.empty()) throw std::invalid_argument("nothing can be reached: " + fault);
   return {map.road_map,
           planning::isochrone(entry->router, from.for_route(), within_s ? *within_s : *within_m),

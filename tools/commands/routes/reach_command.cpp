@@ -93,7 +93,7 @@ class ReachCommand : public Command {
     const map::RoadMap road_map = map::load_map(map_file_);
     const Place from = find_place(road_map, from_, rules_.participant());
     planning::Router router(road_map, rules_.on(road_map, limit.measure));
-    const std::string fault = router.unfit(from.on_lane, "start");
+    const std::string fault = router.unfit(from.for_route(), "start");
     if (!fault.empty()) {
       fmt::print(streams.err, "roadbed: nothing can be reached: {}\n", fault);
       return Exit::no;

@@ -80,10 +80,12 @@ class RouteCommand : public Command {
     if (!batch_.empty()) return run_batch(streams, common);
     const auto kept_map = common.inputs->road_map(map_file_);
     const map::RoadMap& road_map = *kept_map;
-    const RouteQuestion::Asked asked = question_.on(road_map);
+    RouteQuestion::Asked asked = question_.on(road_map);
     planning::Router router(road_map, asked.options);
     const planning::RouteAnswer answer = router.find(asked.places());
     if (!answer.route) return refuse(streams, road_map, asked, answer);
+    asked.from.choose(answer.route->legs.front().lane);
+    asked.to.choose(answer.route->legs.back().lane);
     Routes routes{*answer.route};
     std::vector<double> shared{0.0};
     if (alternatives_ > 1) {
