@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "roadbed/map/files/files_named.h"
@@ -23,9 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& found,
+[[noreturn]] void refuse(const std::string& file, const std::string& found,
                          const std::string& needed) {
-  throw InputError({.file = input_name(file),
+  throw InputError({.file = file,
                     .found = found,
                     .needed = needed,
                     .remedy = "get the file again, or move it away from the map"});
@@ -38,7 +39,7 @@ std::optional<fs::path> only_file(const fs::path& folder, std::string_view part,
   return files.size() == 1 ? std::optional(files.front()) : std::nullopt;
 }
 
-std::vector<double> numbers(const fs::path& file, const Json& root, const char* key,
+std::vector<double> numbers(const std::string& file, const Json& root, const char* key,
                             std::size_t count) {
   std::vector<double> found;
   const Json& value = root.is_object() && root.contains(key) ? root[key] : root;
@@ -90,35 +91,42 @@ std::optional<GroundHeight> GroundHeight::beside(const fs::path& map_file) {
   const auto raster = only_file(folder, "_ground_height_surface____", ".npy");
   const auto transform = only_file(folder, "___img_Sim2_city", ".json");
   if (!raster || !transform) return {};
-  GroundHeight ground;
+  GroundHeight ground = parse({input_name(*transform), read_file(*transform)},
+                              {input_name(*raster), read_file(*raster)});
   ground.file_ = raster->filename().string();
-  ground.read_transform(*transform);
-  ground.read_raster(*raster);
   return ground;
 }
 
-void GroundHeight::read_transform(const fs::path& file) {
+GroundHeight GroundHeight::parse(const File& transform, File raster) {
+  GroundHeight ground;
+  ground.read_transform(transform);
+  ground.read_raster(std::move(raster));
+  return ground;
+}
+
+void GroundHeight::read_transform(const File& file) {
   try {
-    const Json root = parse_json(read_file(file), input_name(file));
-    const std::vector<double> rotation = numbers(file, root, "R", 4);
+    const Json root = parse_json(file.bytes, file.name);
+    const std::vector<double> rotation = numbers(file.name, root, "R", 4);
     rotation_ << rotation[0], rotation[1], rotation[2], rotation[3];
-    const std::vector<double> translation = numbers(file, root, "t", 2);
+    const std::vector<double> translation = numbers(file.name, root, "t", 2);
     translation_ = {translation[0], translation[1]};
-    scale_ = numbers(file, root, "s", 1).front();
+    scale_ = numbers(file.name, root, "s", 1).front();
   } catch (const Json::exception& thrown) {
-    refuse_json(thrown, input_name(file));
+    refuse_json(thrown, file.name);
   }
 }
 
-void GroundHeight::read_raster(const fs::path& file) {
+void GroundHeight::read_raster(File file) {
   constexpr std::string_view magic = "\x93NUMPY";
-  bytes_ = read_file(file);
+  file_ = std::move(file.name);
+  bytes_ = std::move(file.bytes);
   const bool is_short = bytes_.size() < 12 || !bytes_.starts_with(magic);
   const auto byte = [&](std::size_t i) {
     return std::size_t{static_cast<unsigned char>(bytes_[i])};
   };
   const bool is_first = !is_short && byte(6) == 1;  // the size of the header has two bytes
-  if (is_short) refuse(file, "no raster of NumPy", "a .npy file");
+  if (is_short) refuse(file_, "no raster of NumPy", "a .npy file");
   const std::size_t header_begin = is_first ? 10 : 12;
   std::size_t size = byte(8) | byte(9) << 8U;
   if (!is_first) size |= byte(10) << 16U | byte(11) << 24U;
@@ -129,13 +137,13 @@ void GroundHeight::read_raster(const fs::path& file) {
   const auto shape = counts(field(header, "'shape': (", ")"));
   const bool is_in_rows = field(header, "'fortran_order': ", ",") == "False";
   if (bytes_per_cell_ == 0 || shape.size() != 2 || !is_in_rows) {
-    refuse(file, "no raster of two dimensions", "float16, float32 or float64 in rows");
+    refuse(file_, "no raster of two dimensions", "float16, float32 or float64 in rows");
   }
   rows_ = shape[0];
   columns_ = shape[1];
   const std::size_t cells = (bytes_.size() - std::min(begin_, bytes_.size())) / bytes_per_cell_;
   if (columns_ == 0 || rows_ > cells / columns_) {
-    refuse(file, fmt::format("{} cells", cells), fmt::format("{} × {}", rows_, columns_));
+    refuse(file_, fmt::format("{} cells", cells), fmt::format("{} × {}", rows_, columns_));
   }
 }
 

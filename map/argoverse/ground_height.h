@@ -19,14 +19,22 @@ class GroundHeight {
   /// @throws InputError if one of them is unusable.
   static std::optional<GroundHeight> beside(const std::filesystem::path& map_file);
 
+  /// A file's name and bytes.
+  struct File {
+    std::string name, bytes;
+  };
+  /// That of these two.
+  /// @throws InputError if one of them is unusable.
+  static GroundHeight parse(const File& transform, File raster);
+
   /// That of the cell around a point [m]; none where there is no cell, or it has none.
   std::optional<double> at_m(const Eigen::Vector2d& in_city) const;
 
   const std::string& file() const { return file_; }  ///< name of the raster
 
  private:
-  void read_transform(const std::filesystem::path& file);
-  void read_raster(const std::filesystem::path& file);
+  void read_transform(const File& file);
+  void read_raster(File file);
 
   std::string file_, bytes_;
   std::size_t begin_ = 0, bytes_per_cell_ = 0, rows_ = 0, columns_ = 0;

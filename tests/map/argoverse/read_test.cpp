@@ -16,6 +16,7 @@
 #include "roadbed/map/formats.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/made_argoverse.h"
+#include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map {
@@ -251,11 +252,8 @@ TEST(Argoverse, WhatCannotBeUsedIsSaidInOneLine) {
 /// A folder of its own with a map and the raster beside it.
 class GroundHeightBeside : public testing::Test {
  protected:
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-
   void write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    folder_.write(name, bytes);
   }
 
   // float16: 0x4500 is 5, 0x4600 is 6, 0x7e00 is no number.
@@ -276,10 +274,10 @@ class GroundHeightBeside : public testing::Test {
     segment.right_y_m = 200;
     segment.z = "";
     write("log_map_archive_m.json", made_argoverse({segment}));
-    return load_map(folder_ / "log_map_archive_m.json");
+    return load_map(folder_.path() / "log_map_archive_m.json");
   }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / "argoverse_ground";
+  tests::TemporaryFolder folder_;
 };
 
 TEST_F(GroundHeightBeside, GivesPointsWithoutAHeightTheirs) {
