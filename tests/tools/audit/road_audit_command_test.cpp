@@ -33,6 +33,13 @@ class RoadAuditCommand : public testing::Test {
     return run_roadbed(more);
   }
 
+  static void refused(const std::vector<std::string>& words, int status, const std::string& says) {
+    const ProgramRun run = audit(words);
+    EXPECT_EQ(run.status, status) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(says));
+    EXPECT_EQ(run.out, "");
+  }
+
   static nlohmann::json json_of(const ProgramRun& run) { return nlohmann::json::parse(run.out); }
 
   TemporaryFolder folder_;
@@ -192,12 +199,6 @@ TEST_F(RoadAuditCommand, DrawsWhereADriveLeaves) {
 }
 
 TEST_F(RoadAuditCommand, RefusesWhatItCannotAnswerInOneLine) {
-  const auto refused = [&](const std::vector<std::string>& words, int status, const char* says) {
-    const ProgramRun run = audit(words);
-    EXPECT_EQ(run.status, status) << run.err;
-    EXPECT_THAT(run.err, HasSubstr(says));
-    EXPECT_EQ(run.out, "");
-  };
   refused({"--on", "roads", "--map", town_, "--trajectory", in_field_}, 2, "none of drivable");
   refused({"--on", "drivable", "--trajectory", in_field_}, 2, "needs --map");
   refused({"--trajectory", in_field_}, 2, "--occupancy or --on is required");
@@ -223,6 +224,28 @@ TEST_F(RoadAuditCommand, RefusesWhatItCannotAnswerInOneLine) {
           3, "99/9/9");
   refused({"--on", "area:" + field_, "--trajectory", in_field_, "--rules", "manners"}, 2,
           "--rules");
+}
+
+/// What only an occupancy is asked for must not look as if it had been.
+TEST_F(RoadAuditCommand, RefusesWhatItWouldNotLookAt) {
+  const std::string wall = folder_.write(
+      "wall.csv", "t_s,id,x_m,y_m,heading_rad,length_m,width_m\n0,wall,15,20,0,1,5\n");
+  const std::vector<std::string> asked{"--on", "area:" + field_, "--trajectory", in_field_};
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--obstacles", wall},
+                                               {"--clearance", "1"},
+                                               {"--unknown", "occupied"},
+                                               {"--least-measured", "1"},
+                                               {"--from-height", "1"}}) {
+    auto words = asked;
+    words.insert(words.end(), more.begin(), more.end());
+    refused(words, 2, more.front() + " needs --occupancy");
+  }
+}
+
+TEST_F(RoadAuditCommand, CertifiesNothingOfRules) {
+  refused({"--on", "drivable", "--map", town_, "--trajectory", in_field_, "--rules", "all",
+           "--certificate", path("proof.json")},
+          2, "--certificate excludes --rules");
 }
 
 }  // namespace

@@ -156,8 +156,24 @@ std::string AuditAsked::fault() const {
   const bool is_area = !on_.empty() && on_.starts_with("area:");
   if (!on_.empty() && !is_area && map_.empty()) return "--on " + on_ + " needs --map";
   if (!rules_.empty() && map_.empty()) return "--rules needs --map";
-  if (occupancy_.empty() && !ground_.empty()) return "--ground needs --occupancy";
-  if (occupancy_.empty() && !filter_.words().empty()) return filter_.words() + " needs --occupancy";
+  return occupancy_.empty() ? about_occupancy() : "";
+}
+
+// Of a road audit nothing of that counts, and who gives it takes it to.
+std::string AuditAsked::about_occupancy() const {
+  if (!ground_.empty()) return "--ground needs --occupancy";
+  if (!filter_.words().empty()) return filter_.words() + " needs --occupancy";
+  for (const auto& [name, argument] : {std::pair{"--clearance", &clearance_argument_},
+                                       {"--unknown", &unknown_argument_},
+                                       {"--least-measured", &least_measured_argument_},
+                                       {"--from-height", &from_height_argument_}}) {
+    if ((*argument)->given()) return std::string(name) + " needs --occupancy";
+  }
+  const auto rules = rules_of(rules_);
+  const bool has_lights = std::ranges::count(rules, planning::TrafficRule::lights) > 0;
+  if (!obstacles_.empty() && !has_lights) {
+    return "--obstacles needs --occupancy, or --rules lights for those of a scenario";
+  }
   return {};
 }
 

@@ -53,6 +53,11 @@ class AuditAsked {
   /// @pre about_road()
   RoadQuestion road_question(const map::RoadMap* road_map) const;
 
+  /// Whether obstacles are given of which only the lights beside them are looked at.
+  bool leaves_obstacles() const { return occupancy_.empty() && !obstacles_.empty(); }
+
+  bool has_rules() const { return !rules_.empty(); }
+
   /// Only what the command line says.
   CertificateDemands demands(const std::filesystem::path& trajectory) const;
 
@@ -63,6 +68,7 @@ class AuditAsked {
   std::string suite() const;
 
  private:
+  std::string about_occupancy() const;
   void declare_question(Arguments& arguments);
   /// @returns `--rules`.
   Argument declare_road(Arguments& arguments);

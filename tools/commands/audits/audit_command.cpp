@@ -68,6 +68,11 @@ class AuditCommand : public Command {
     outputs_.check(asked_, subjects_);
     const LogScene of_log = subjects_.log().empty() ? LogScene() : take_log(common);
     AuditScene scene = audit_scene(asked_, outputs_.certifies(), common);
+    if (of_log.occupancy == nullptr && asked_.leaves_obstacles() && !common.quiet) {
+      fmt::print(streams.err,
+                 "note: the obstacles of {} count with --occupancy only; its lights do\n",
+                 asked_.obstacles_file().string());
+    }
     scene.command = "roadbed audit " + asked_.against();
     if (asked_.obstacles_file().empty()) scene.question.moving_in_source = of_log.obstacles;
     if (outputs_.saves_obstacles()) as_saved(scene.question.moving_in_source);
@@ -120,6 +125,10 @@ class AuditCommand : public Command {
   // It is about files, which who checks it reads by themselves.
   std::string certificate_fault() const {
     if (!outputs_.certifies()) return {};
+    if (asked_.has_rules()) {
+      return "--certificate excludes --rules: no certificate holds what they found; ask for them "
+             "by themselves";
+    }
     const bool has_log = !subjects_.log().empty();
     const bool has_octree = !has_log || !asked_.occupancy_file().empty();
     std::string needed;
