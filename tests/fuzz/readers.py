@@ -27,7 +27,7 @@ SOURCES = {
     "kitti": r"map/occupancy/clouds/read_kitti",
     "lane_table": r"map/lane_table/(geojson|geopackage|mapping|read|shapes)",
     "lanelet2": r"map/lanelet2/(?!autoware|rules|write)",
-    "las": r"map/occupancy/clouds/read_las|map/occupancy/laz/",
+    "las": r"map/occupancy/clouds/read_las|map/occupancy/laz/|map/files/wkt_units",
     "log": r"map/logs/(bag|cdr|foxglove_poses|log|mcap\.|pose_messages|protobuf|timed_pose"
            r"|transform_tree)",
     "obstacles_csv": r"tools/files/(obstacles_csv|csv)",

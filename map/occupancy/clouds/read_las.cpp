@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "roadbed/map/files/wkt_units.h"
 #include "roadbed/map/occupancy/clouds/attribute_filter.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
 #include "roadbed/map/occupancy/laz/laz_points.h"
@@ -171,7 +172,8 @@ class LasParser {
 
   void name_crs() {
     constexpr unsigned user_defined = 32767;
-    const bool projected = geo_.projected_crs != 0 || geo_.wkt.starts_with("PROJCS");
+    const CrsUnits units = units_of_wkt(geo_.wkt);
+    const bool projected = geo_.projected_crs != 0 || units.horizontal_m.has_value();
     const unsigned code = projected ? geo_.projected_crs : geo_.geographic_crs;
     if (code != 0 && code != user_defined) {
       cloud_.crs = fmt::format("EPSG:{}", code);
@@ -181,8 +183,22 @@ class LasParser {
     if (geo_.linear_unit == 9001) cloud_.unit = LengthUnit::metre;
     if (geo_.linear_unit == 9002) cloud_.unit = LengthUnit::foot;
     if (geo_.linear_unit == 9003) cloud_.unit = LengthUnit::us_survey_foot;
-    const bool geographic = geo_.geographic_crs != 0 || geo_.wkt.starts_with("GEOGCS");
+    const bool geographic = geo_.geographic_crs != 0 || units.is_in_degrees;
     if (!projected && geographic) cloud_.unit = LengthUnit::degree;
+    if (units.horizontal_m) cloud_.unit = unit_of(*units.horizontal_m);
+    if (units.vertical_m && units.horizontal_m && *units.vertical_m != *units.horizontal_m) {
+      cloud_.notes.push_back(fmt::format(
+          "heights are in {}, x and y in {}; all count as the latter",
+          to_string(unit_of(*units.vertical_m)), to_string(unit_of(*units.horizontal_m))));
+    }
+  }
+
+  static LengthUnit unit_of(double metres) {
+    constexpr double same = 1e-8;  // feet differ by 6e-7
+    if (std::abs(metres - 1.0) < same) return LengthUnit::metre;
+    if (std::abs(metres - 0.3048) < same) return LengthUnit::foot;
+    if (std::abs(metres - 1200.0 / 3937.0) < same) return LengthUnit::us_survey_foot;
+    return LengthUnit::unknown;
   }
 
   void read_scale() {
