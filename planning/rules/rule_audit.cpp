@@ -303,6 +303,15 @@ class RuleAudit {
     return (map::border(lane, side).in_map.project(point).d_m > 0.0) == (side == Side::right);
   }
 
+  /// Whether these are all lanes that the axle is in, outside of junctions; so where it is in none.
+  /// Where lanes overlap, as those through a crossing do, who keeps to one of them breaks no line.
+  bool are_all_at_axle(std::size_t i, const std::set<LaneId>& broken) const {
+    return std::ranges::all_of(at_axle_.of(i), [&](const LaneMatch& match) {
+      const Lane& lane = road_map_.lane(match.place.lane);
+      return match.distance_m > 0.0 || lane.junction || broken.contains(lane.id);
+    });
+  }
+
   /// A line is crossed from where the axle was when the body came over it, to the crossing's end.
   RuleReport markings() const {
     Violations found;
@@ -313,6 +322,8 @@ class RuleAudit {
       const geometry::Rectangle body =
           body_.box_at({moment.axle.x(), moment.axle.y(), moment.state.heading_rad});
       Crossings now;
+      std::set<LaneId> broken;
+      std::vector<std::pair<std::size_t, Violation>> over;  // by line
       for (const auto& [id, s_m] : lanes_under(i)) {
         const Lane& lane = road_map_.lane(id);
         for (const Side side : {Side::left, Side::right}) {
@@ -325,11 +336,15 @@ class RuleAudit {
           const bool from_right = crossing->from_inside == (side == Side::left);
           if (std::ranges::none_of(marks, [&](auto mark) { return forbids(mark, from_right); }))
             continue;
-          found.add(previous_s(i), crossing->index,
-                    violation(i, lane.name,
-                              fmt::format("over the solid marking on its {}",
-                                          side == Side::left ? "left" : "right")));
+          broken.insert(id);
+          over.emplace_back(crossing->index,
+                            violation(i, lane.name,
+                                      fmt::format("over the solid marking on its {}",
+                                                  side == Side::left ? "left" : "right")));
         }
+      }
+      if (are_all_at_axle(i, broken)) {
+        for (const auto& [line, one] : over) found.add(previous_s(i), line, one);
       }
       before = std::move(now);
     }

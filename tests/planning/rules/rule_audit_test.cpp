@@ -148,6 +148,22 @@ tests::MadeMap lanes_beside(MarkType between) {
   return road.made;
 }
 
+/// Lanes of Lanelet2 cross without a junction, each with its own lines.
+TEST(RuleAudit, LooksNotAtLinesOfLanesThatCrossTheOneThatIsKept) {
+  tests::MadeMap made;
+  const map::LaneId east =
+      made.add_lane(made.add_road("1"), "-1", {{0, 2}, {100, 2}}, {{0, -2}, {100, -2}});
+  const map::LaneId north =
+      made.add_lane(made.add_road("2"), "-1", {{48, -50}, {48, 50}}, {{52, -50}, {52, 50}});
+  for (const map::LaneId id : {east, north}) {
+    made.lane(id).left_marks = made.lane(id).right_marks = {{0.0, MarkType::solid, "", 0.0}};
+  }
+  EXPECT_THAT(audited(made, TrafficRule::markings, line(5, 0, 90, 0)).violations, IsEmpty());
+  const RuleReport leaves = audited(made, TrafficRule::markings, line(5, 0, 90, 3));
+  ASSERT_THAT(leaves.violations, testing::Not(IsEmpty()));
+  EXPECT_EQ(leaves.violations.front().lane, made.lane(east).name);
+}
+
 TEST(RuleAudit, CountsACrossingAsOneViolationOnBothSidesOfTheLine) {
   const tests::MadeMap made = lanes_beside(MarkType::solid);
   for (const Trajectory& drive : {line(10, -2, 40, -6), line(35, -2, 65, -6), line(35, -6, 65, -2)})
