@@ -11,6 +11,7 @@
 #include "roadbed/map/derived/surface.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/index/road_map_index.h"
+#include "roadbed/planning/audit/drive_level.h"
 
 namespace roadbed::planning::inline audit {
 namespace {
@@ -58,10 +59,9 @@ Lanes lanes_of_type(const RoadMap& road_map, const std::vector<Box>& boxes,
   return lanes;
 }
 
-// Poses at most half a metre apart, in coordinates of the map.
-std::vector<geometry::Pose2> poses_along(const RoadMap& road_map,
-                                         const geometry::Trajectory& drive) {
-  constexpr double apart_m = 0.5;
+// In coordinates of the map, at most so far apart.
+std::vector<geometry::Pose2> poses_along(const RoadMap& road_map, const geometry::Trajectory& drive,
+                                         double apart_m) {
   std::vector<geometry::Pose2> poses;
   const auto take = [&](const geometry::TrajectoryPoint& state) {
     const Vector2d at = road_map.to_map({state.x_m, state.y_m});
@@ -85,7 +85,7 @@ std::vector<geometry::Pose2> poses_along(const RoadMap& road_map,
 Lanes lanes_driven(const RoadMap& road_map, const geometry::Trajectory& drive) {
   constexpr double within_m = 3.0, inside_m = 0.05;
   constexpr std::size_t most = 16;
-  const std::vector<geometry::Pose2> poses = poses_along(road_map, drive);
+  const std::vector<geometry::Pose2> poses = poses_along(road_map, drive, 0.5);
   std::vector<Vector2d> points;
   for (const geometry::Pose2& pose : poses) points.push_back(pose.position());
   const map::LaneMatches matches = road_map.locate(points, within_m, most, true);
@@ -171,9 +171,13 @@ bool has_any(const RoadMap& road_map, const map::LaneTypes& types) {
 
 Lanes lanes_of(const SurfaceRule& rule, const geometry::Trajectory& drive,
                const std::vector<Box>& boxes, double reach_m) {
-  if (rule.kind == RuleKind::lanes) return lanes_along(*rule.road_map, drive, reach_m);
   if (rule.kind == RuleKind::route) return {rule.route.begin(), rule.route.end()};
-  return lanes_of_type(*rule.road_map, boxes, types_of(rule.kind));
+  const RoadMap& road_map = *rule.road_map;
+  Lanes lanes = rule.kind == RuleKind::lanes ? lanes_along(road_map, drive, reach_m)
+                                             : lanes_of_type(road_map, boxes, types_of(rule.kind));
+  constexpr double apart_m = 2.0, beside_m = 5.0;
+  return lanes_on_level(road_map, std::move(lanes), poses_along(road_map, drive, apart_m),
+                        reach_m + beside_m);
 }
 
 }  // namespace

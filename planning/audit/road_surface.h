@@ -36,7 +36,8 @@ std::string_view to_string(SurfaceRule::Kind kind);
 inline constexpr double kSurfaceHorizon_m = 20.0;
 
 /// The polygons of a rule that are within the horizon of a drive, one by one as the map has them,
-/// in source coordinates; of an area and a route all, whatever the drive.
+/// in source coordinates; of an area and a route all, whatever the drive. Where roads lie above one
+/// another, those on the drive's level (`drive_level.h`).
 /// @param reach_m  from the rear axle to the farthest point of the body.
 /// @throws InputError if the map has nothing of that kind anywhere.
 std::vector<geometry::Polygon> surface_polygons(const SurfaceRule& rule,
