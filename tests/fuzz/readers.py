@@ -14,7 +14,7 @@ SOURCES = {
     "certificate": r"tools/audit/certificate_json|planning/audit/certificate_check",
     "cloud_message": r"map/logs/cloud_message"
                      r"|map/occupancy/clouds/(message_points|point_time|sweep_poses)",
-    "common_road": r"map/commonroad/(document|intersections|lanes|links|read|scenario|traffic_rules"
+    "common_road": r"map/commonroad/(document|lanes|links|read|scenario|traffic_rules"
                    r"|values)\.",
     "compiled_map": r"map/compiled/|map/storage/chunked_file",
     "drive_file": r"tools/files/(drive_file|pose_lines|argoverse_drive|solution_drive)",
@@ -54,7 +54,7 @@ SOURCES = {
 }
 
 #: Functions beside them that read nothing.
-WRITERS = re.compile(r"write_|json_of")
+WRITERS = re.compile(r"write_|json_of|FileWriter")
 
 #: Other folders whose files are seeds, too.
 FOLDERS = {
