@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <optional>
 
 #include "roadbed/map/files/xml.h"
 #include "roadbed/tools/files/drive_formats.h"
@@ -8,25 +10,45 @@
 namespace roadbed::tools::inline files {
 namespace {
 
-/// Point-mass states have two speeds and no orientation; commonroad-io calls them xVelocity and
-/// yVelocity. At rest they keep the heading that they had before.
-DrivePose state_of(const map::XmlDocument& xml, pugi::xml_node state, double step_s,
-                   double heading_before_rad) {
-  DrivePose pose{.t_s = step_s * xml.text_number(state, "time"),
-                 .x_m = xml.text_number(state, "x"),
-                 .y_m = xml.text_number(state, "y"),
-                 .heading_rad = heading_before_rad};
+/// What a state says but for its heading, and that where it says one: point-mass states have two
+/// speeds, which commonroad-io calls xVelocity and yVelocity, and no direction at rest.
+struct SolutionState {
+  DrivePose pose;
+  std::optional<double> heading_rad = {};
+};
+
+SolutionState state_of(const map::XmlDocument& xml, pugi::xml_node state, double step_s) {
+  SolutionState read{.pose = {.t_s = step_s * xml.text_number(state, "time"),
+                              .x_m = xml.text_number(state, "x"),
+                              .y_m = xml.text_number(state, "y"),
+                              .heading_rad = 0.0}};
   if (state.child("orientation")) {
-    pose.heading_rad = xml.text_number(state, "orientation");
-    if (state.child("velocity")) pose.speed_mps = xml.text_number(state, "velocity");
-    return pose;
+    read.heading_rad = xml.text_number(state, "orientation");
+    if (state.child("velocity")) read.pose.speed_mps = xml.text_number(state, "velocity");
+    return read;
   }
   const bool is_plain = state.child("velocity");
   const double along_x_mps = xml.text_number(state, is_plain ? "velocity" : "xVelocity");
   const double along_y_mps = xml.text_number(state, is_plain ? "velocityY" : "yVelocity");
-  pose.speed_mps = std::hypot(along_x_mps, along_y_mps);
-  if (*pose.speed_mps > 0.0) pose.heading_rad = std::atan2(along_y_mps, along_x_mps);
-  return pose;
+  read.pose.speed_mps = std::hypot(along_x_mps, along_y_mps);
+  if (*read.pose.speed_mps > 0.0) read.heading_rad = std::atan2(along_y_mps, along_x_mps);
+  return read;
+}
+
+bool has_heading(const SolutionState& state) { return state.heading_rad.has_value(); }
+
+/// Who rests heads where it did before; before it first moves, where it will.
+/// @pre a state has a heading.
+std::vector<DrivePose> with_held_headings(const std::vector<SolutionState>& states) {
+  const auto first = std::ranges::find_if(states, has_heading);
+  double held_rad = *first->heading_rad;
+  std::vector<DrivePose> poses;
+  for (const SolutionState& state : states) {
+    held_rad = state.heading_rad.value_or(held_rad);
+    poses.push_back(state.pose);
+    poses.back().heading_rad = held_rad;
+  }
+  return poses;
 }
 
 /// "KS2:SM1:…": the vehicle 2 of CommonRoad's.
@@ -59,12 +81,18 @@ DrivePoses parse_solution(std::string_view bytes, const std::string& name,
     }
     driven = trajectory;
   }
+  std::vector<SolutionState> states;
   for (const pugi::xml_node state : driven.children()) {
     if (!std::string_view(state.name()).ends_with("State")) continue;
-    const double before_rad = read.poses.empty() ? 0.0 : read.poses.back().heading_rad;
-    read.poses.push_back(state_of(xml, state, step_s, before_rad));
+    states.push_back(state_of(xml, state, step_s));
     read.places.push_back(static_cast<std::size_t>(xml.line_of(state)));
   }
+  if (states.empty()) return read;
+  if (std::ranges::none_of(states, has_heading)) {
+    xml.refuse(driven, "is of a point mass at rest all along", "a state that moves: its heading",
+               "give the drive as a table, which has headings");
+  }
+  read.poses = with_held_headings(states);
   return read;
 }
 

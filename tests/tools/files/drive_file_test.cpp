@@ -109,6 +109,36 @@ TEST(DriveFile, OfAPointMassHasTheSpeedsThatEitherPairOfNamesSays) {
   }
 }
 
+std::string point_mass(const std::string& states) {
+  return "<?xml version=\"1.0\"?>\n<CommonRoadSolution benchmark_id=\"PM2:SM1:A-1:2020a\">\n"
+         "<pmTrajectory planningProblem=\"1\">\n" +
+         states + "</pmTrajectory></CommonRoadSolution>";
+}
+
+std::string point_mass_state(int step, double y_m, double along_x_mps, double along_y_mps) {
+  return fmt::format(
+      "<pmState><x>1</x><y>{}</y><xVelocity>{}</xVelocity><yVelocity>{}</yVelocity>"
+      "<time>{}</time></pmState>\n",
+      y_m, along_x_mps, along_y_mps, step);
+}
+
+TEST(DriveFile, OfAPointMassAtRestHeadsWhereItWillGo) {
+  const std::string solution =
+      point_mass(point_mass_state(0, 5.0, 0.0, 0.0) + point_mass_state(1, 5.0, 0.0, 0.0) +
+                 point_mass_state(2, 5.1, 0.0, 1.0) + point_mass_state(3, 5.2, 0.0, 0.0));
+  const auto rows = parse_drive(solution, "a drive", {.rate_hz = 10.0}).points();
+  ASSERT_EQ(rows.size(), 4u);
+  for (const auto& row : rows) EXPECT_NEAR(row.heading_rad, 0.5 * 3.14159265358979, 1e-12);
+  EXPECT_NEAR(rows[0].x_m, 1.0, 1e-9);
+  EXPECT_NEAR(rows[0].y_m, 5.0 - (0.5 * 4.508 - 0.8312829), 1e-6);
+}
+
+TEST(DriveFile, OfAPointMassThatNeverMovesHasNoHeading) {
+  const std::string solution =
+      point_mass(point_mass_state(0, 5.0, 0.0, 0.0) + point_mass_state(1, 5.0, 0.0, 0.0));
+  EXPECT_NE(fault_of(solution, {.rate_hz = 10.0}).find("at rest all along"), std::string::npos);
+}
+
 TEST(DriveFile, IsStillATableWhereItIsOne) {
   const std::string table = "t_s,x_m,y_m,heading_rad\n0,1,2,0.5\n";
   EXPECT_EQ(parse_drive(table, "a drive", {}).points().front().heading_rad, 0.5);
