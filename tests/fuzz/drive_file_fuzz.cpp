@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     roadbed::tools::parse_drive(
         bytes, "fuzz.txt",
-        {.topic = "", .pose_in_vehicle = roadbed::geometry::Pose2{1.0, 0.0, 0.1}, .rate_hz = 10.0});
+        {.topic = "", .pose_frame = roadbed::tools::PoseFrame{{1.0, 0.0, 0.1}}, .rate_hz = 10.0});
   } catch (const roadbed::map::InputError&) {
   }
   return 0;

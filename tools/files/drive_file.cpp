@@ -102,11 +102,24 @@ class DriveOfPoses {
   const std::string& name_;
 };
 
-DrivePoses of_log(const map::LogDrive& log) {
+/// No road does: it is a camera's z axis.
+bool goes_upwards(const std::vector<DrivePose>& poses) {
+  constexpr double least_way_m = 5.0, most_upwards = 0.9;
+  double way_m = 0.0, upwards_m = 0.0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const DrivePose &from = poses[i - 1], &to = poses[i];
+    const double up_m = std::abs(to.z_m - from.z_m);
+    way_m += std::hypot(to.x_m - from.x_m, to.y_m - from.y_m, up_m);
+    upwards_m += up_m;
+  }
+  return way_m > least_way_m && upwards_m > most_upwards * way_m;
+}
+
+DrivePoses of_log(const map::LogDrive& log, const DriveOptions& options) {
   DrivePoses read{.unit = "pose", .pose_in_vehicle = Pose2{}};
   for (const map::TimedPose& at : log.poses) {
     const std::int64_t since_ns = at.stamp_ns - log.poses.front().stamp_ns;
-    read.poses.push_back(flat_pose(1e-9 * static_cast<double>(since_ns), at.pose));
+    read.poses.push_back(flat_pose(1e-9 * static_cast<double>(since_ns), at.pose, options));
     read.poses.back().speed_mps = at.speed_mps;
     read.places.push_back(read.poses.size());
   }
@@ -127,25 +140,42 @@ geometry::Trajectory drive_of_rows(const std::vector<TrajectoryPoint>& rows,
 
 geometry::Trajectory drive_of(const DrivePoses& read, const std::string& name,
                               const DriveOptions& options) {
-  const std::optional<Pose2> frame =
-      options.pose_in_vehicle ? options.pose_in_vehicle : read.pose_in_vehicle;
-  if (!frame) {
+  const std::optional<Pose2> pose_in_vehicle =
+      options.pose_frame ? options.pose_frame->pose_in_vehicle : read.pose_in_vehicle;
+  if (!pose_in_vehicle) {
     throw map::InputError({.file = name,
                            .found = "does not say which point of the vehicle its poses are",
-                           .needed = "--pose-frame rear-axle, centre or X,Y[,HEADING]",
+                           .needed = std::string("--pose-frame ") + kPoseFrameSyntax,
                            .remedy = "give it"});
   }
-  return DriveOfPoses(read, name).drive(*frame);
+  if (!is_of_camera(options) && goes_upwards(read.poses)) {
+    throw map::InputError({.file = name,
+                           .found = "goes along the z axis, which is up, or is ahead of a camera",
+                           .needed = "poses of a vehicle, z up, or --pose-frame camera",
+                           .remedy = "give that if they are a camera's, as KITTI's are"});
+  }
+  return DriveOfPoses(read, name).drive(*pose_in_vehicle);
 }
 
 }  // namespace
 
-DrivePose flat_pose(double t_s, const Eigen::Isometry3d& pose) {
-  const Eigen::Vector3d ahead = pose.linear().col(0);
+bool is_of_camera(const DriveOptions& options) {
+  return options.pose_frame && options.pose_frame->is_camera;
+}
+
+DrivePose flat_pose(double t_s, const Eigen::Isometry3d& pose, const DriveOptions& options) {
+  Eigen::Vector3d place = pose.translation(), ahead = pose.linear().col(0);
+  if (is_of_camera(options)) {
+    Eigen::Matrix3d upright_from_camera;
+    upright_from_camera << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    place = upright_from_camera * place;
+    ahead = upright_from_camera * pose.linear().col(2);
+  }
   return {.t_s = t_s,
-          .x_m = pose.translation().x(),
-          .y_m = pose.translation().y(),
-          .heading_rad = std::atan2(ahead.y(), ahead.x())};
+          .x_m = place.x(),
+          .y_m = place.y(),
+          .heading_rad = std::atan2(ahead.y(), ahead.x()),
+          .z_m = place.z()};
 }
 
 double needed_step_s(const DriveOptions& options, const std::string& name,
@@ -161,7 +191,8 @@ geometry::Trajectory read_drive(const fs::path& file, const DriveOptions& option
   const std::string name = map::input_name(file);
   if (map::is_log(file)) {
     const map::LogDrive log = map::drive_of_log(file, options.topic);
-    return log.rows.empty() ? drive_of(of_log(log), name, options) : drive_of_rows(log.rows, name);
+    return log.rows.empty() ? drive_of(of_log(log, options), name, options)
+                            : drive_of_rows(log.rows, name);
   }
   return parse_drive(map::read_file(file, map::most_unpacked_of_rows), name, options);
 }

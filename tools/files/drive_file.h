@@ -21,7 +21,10 @@ namespace roadbed::tools::inline files {
 /// | TUM: `t x y z qx qy qz qw` a line | has to be said | as they stand |
 /// | KITTI: the upper three rows of the matrix | has to be said | `rate_hz` |
 ///
-/// z points up in all of them. Speeds follow from the poses where the file has none.
+/// z points up in all of them, but ahead where `--pose-frame camera` says that they are a camera's:
+/// a pose (x, y, z) of one is then at (z, -x), headed as its z axis is. One of which more than 0.9
+/// of the way, over 5 m, is along z, is refused where that was not said. Speeds follow from the
+/// poses where the file has none.
 /// @throws InputError with file and place; also where rows cannot be a drive (`implausible_row`).
 geometry::Trajectory read_drive(const std::filesystem::path& file, const DriveOptions& options);
 

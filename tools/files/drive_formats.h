@@ -17,6 +17,7 @@ struct DrivePose {
   double t_s;
   double x_m, y_m, heading_rad;
   std::optional<double> speed_mps = {};
+  double z_m = 0.0;  ///< up
 };
 
 /// What a file holds.
@@ -27,8 +28,11 @@ struct DrivePoses {
   std::optional<geometry::Pose2> pose_in_vehicle = {};  ///< what the format says of it
 };
 
-/// Of an upright body; heading is that of its x axis in the plane.
-DrivePose flat_pose(double t_s, const Eigen::Isometry3d& pose);
+/// Of an upright body; heading is that of its x axis in the plane, or a camera's z axis.
+DrivePose flat_pose(double t_s, const Eigen::Isometry3d& pose, const DriveOptions& options);
+
+/// Whether it is a camera's poses that the options say a file holds.
+bool is_of_camera(const DriveOptions& options);
 
 // One file each.
 bool begins_as_pose_lines(std::string_view bytes);

@@ -8,17 +8,27 @@
 
 namespace roadbed::tools::inline files {
 
-/// What has to be said of drives whose files do not say it.
-struct DriveOptions {
-  std::string topic = {};  ///< of a log; empty: the only one that is a drive
-  /// Which pose of the vehicle is in the file, in the vehicle's frame (rear axle's centre).
-  std::optional<geometry::Pose2> pose_in_vehicle = {};
-  std::optional<double> rate_hz = {};  ///< of poses without time
+/// Which pose of the vehicle a file holds, and along which axes.
+struct PoseFrame {
+  geometry::Pose2 pose_in_vehicle = {};  ///< in the vehicle's frame (rear axle's centre)
+  /// Of the poses and of what they are in: x to the right, y down, z ahead. Else z points up.
+  bool is_camera = false;
 };
 
+/// What has to be said of drives whose files do not say it.
+struct DriveOptions {
+  std::string topic = {};                    ///< of a log; empty: the only one that is a drive
+  std::optional<PoseFrame> pose_frame = {};  ///< of the poses in the file
+  std::optional<double> rate_hz = {};        ///< of poses without time
+};
+
+/// How those words are written, for messages.
+inline constexpr const char* kPoseFrameSyntax =
+    "rear-axle, centre, X,Y[,HEADING] or camera[:X,Y[,HEADING]]";
+
 /// The words of `--pose-frame`: rear-axle, centre, or X,Y[,HEADING] in metres ahead and to the left
-/// of the rear axle's centre and radians. None if they are something else.
-std::optional<geometry::Pose2> pose_frame(const std::string& words,
-                                          const geometry::VehicleShape& shape);
+/// of the rear axle's centre and radians; or camera, over the rear axle's centre, and camera:X,Y…,
+/// elsewhere. None if they are something else.
+std::optional<PoseFrame> pose_frame(const std::string& words, const geometry::VehicleShape& shape);
 
 }  // namespace roadbed::tools::files

@@ -106,7 +106,8 @@ DrivePoses parse_pose_lines(std::string_view bytes, const std::string& name,
                              .remedy = "mend the line"});
     }
     const double t_s = width == kTum ? numbers[0] : step_s * static_cast<double>(read.poses.size());
-    read.poses.push_back(flat_pose(t_s, width == kTum ? of_tum(numbers) : of_kitti(numbers)));
+    read.poses.push_back(
+        flat_pose(t_s, width == kTum ? of_tum(numbers) : of_kitti(numbers), options));
     read.places.push_back(line_number);
   }
   return read;

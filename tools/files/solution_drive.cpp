@@ -72,7 +72,12 @@ DrivePoses parse_solution(std::string_view bytes, const std::string& name,
                           const DriveOptions& options) {
   const double step_s = needed_step_s(options, name, "a CommonRoad solution");
   const map::XmlDocument xml{std::string(bytes), name};
-  DrivePoses read{.unit = "line", .pose_in_vehicle = pose_frame("centre", vehicle_of(xml))};
+  DrivePoses read{.unit = "line",
+                  .pose_in_vehicle = pose_frame("centre", vehicle_of(xml))->pose_in_vehicle};
+  if (is_of_camera(options)) {
+    xml.refuse(xml.root(), "has poses in the plane, and no camera's", "another --pose-frame",
+               "leave it out: they are of the middle of its vehicle's body");
+  }
   pugi::xml_node driven;
   for (const pugi::xml_node trajectory : xml.root().children()) {
     if (!std::string_view(trajectory.name()).ends_with("Trajectory")) continue;

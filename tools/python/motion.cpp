@@ -56,12 +56,12 @@ DriveOptions drive_options(const std::string& topic, const std::string& frame, n
   if (rate_hz && !(*rate_hz >= 1e-3 && *rate_hz <= 1e6)) {
     throw std::invalid_argument(fmt::format("rate_hz: {}, needs 0.001 to 1e6", *rate_hz));
   }
-  DriveOptions options{.topic = topic, .pose_in_vehicle = {}, .rate_hz = rate_hz};
+  DriveOptions options{.topic = topic, .pose_frame = {}, .rate_hz = rate_hz};
   if (frame.empty()) return options;
-  options.pose_in_vehicle = pose_frame(frame, shape_of(vehicle));
-  if (!options.pose_in_vehicle) {
+  options.pose_frame = pose_frame(frame, shape_of(vehicle));
+  if (!options.pose_frame) {
     throw std::invalid_argument(
-        fmt::format("pose_frame: \"{}\", needs rear-axle, centre or X,Y[,HEADING]", frame));
+        fmt::format("pose_frame: \"{}\", needs {}", frame, kPoseFrameSyntax));
   }
   return options;
 }
@@ -99,7 +99,9 @@ void bind_trajectory(nb::module_& module) {
           "or KITTI.\n\n"
           "topic: of a log, where several could be the drive; pose_frame: which point the poses "
           "are, \"rear-axle\", \"centre\" of the vehicle's body, or \"X,Y[,HEADING]\" ahead and to "
-          "the left of the rear axle; rate_hz: poses in a second, where the file has no times.")
+          "the left of the rear axle, \"camera[:X,Y[,HEADING]]\" for a camera's (x right, y down, "
+          "z "
+          "ahead); rate_hz: poses in a second, where the file has no times.")
       .def(
           "save",
           [](Trajectory& self, nb::handle path) {

@@ -19,10 +19,9 @@ DriveOptions options_in(const JsonNode& node, const geometry::VehicleShape& body
   if (const auto topic = node.find("topic")) options.topic = topic->one_line();
   if (const auto rate = node.find("rate_hz")) options.rate_hz = rate->number(kRate);
   if (const auto frame = node.find("pose_frame")) {
-    options.pose_in_vehicle = pose_frame(frame->text(), body);
-    if (!options.pose_in_vehicle) {
-      frame->refuse("is \"" + frame->name() + "\"", "rear-axle, centre or X,Y[,HEADING]",
-                    "choose one");
+    options.pose_frame = pose_frame(frame->text(), body);
+    if (!options.pose_frame) {
+      frame->refuse("is \"" + frame->name() + "\"", kPoseFrameSyntax, "choose one");
     }
   }
   return options;
@@ -39,7 +38,7 @@ RecordedObstacle recorded_obstacle_in(const JsonNode& node, const std::filesyste
   return {.file = folder / node.at("file").text(),
           .pointer = node.pointer(),
           .options = options_in(node, body),
-          .centre_in_vehicle = *pose_frame("centre", body),
+          .centre_in_vehicle = pose_frame("centre", body)->pose_in_vehicle,
           .offset_s = node.number_or("offset_s", 0.0, kTimeOffset)};
 }
 

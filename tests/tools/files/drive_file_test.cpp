@@ -43,7 +43,7 @@ std::string circle_as_tum(const Pose2& seen) {
 TEST(DriveFile, IsOfTheRearAxleWhereverThePoseIs) {
   for (const Pose2 seen : {Pose2{0, 0, 0}, Pose2{1.4, 0, 0}, Pose2{-0.5, 0.7, 0.4}}) {
     const auto drive =
-        parse_drive(circle_as_tum(seen), "a drive", {.pose_in_vehicle = seen, .rate_hz = {}});
+        parse_drive(circle_as_tum(seen), "a drive", {.pose_frame = PoseFrame{seen}, .rate_hz = {}});
     ASSERT_EQ(drive.points().size(), 50u);
     for (int i = 0; i < 50; ++i) {
       const auto& row = drive.points()[static_cast<std::size_t>(i)];
@@ -60,15 +60,15 @@ TEST(DriveFile, AsksForWhatTheFileDoesNotSay) {
   const std::string tum = circle_as_tum({});
   EXPECT_NE(fault_of(tum, {}).find("--pose-frame"), std::string::npos);
   const std::string kitti = "1 0 0 5 0 1 0 6 0 0 1 0\n1 0 0 5.5 0 1 0 6 0 0 1 0\n";
-  EXPECT_NE(fault_of(kitti, {.pose_in_vehicle = Pose2{}, .rate_hz = {}}).find("--rate"),
+  EXPECT_NE(fault_of(kitti, {.pose_frame = PoseFrame{}, .rate_hz = {}}).find("--rate"),
             std::string::npos);
-  const auto drive = parse_drive(kitti, "a drive", {.pose_in_vehicle = Pose2{}, .rate_hz = 10.0});
+  const auto drive = parse_drive(kitti, "a drive", {.pose_frame = PoseFrame{}, .rate_hz = 10.0});
   EXPECT_EQ(drive.points()[1].x_m, 5.5);
   EXPECT_NEAR(drive.points()[1].t_s, 0.1, 1e-15);
 }
 
 TEST(DriveFile, NamesTheLineThatIsNoPose) {
-  const DriveOptions options{.pose_in_vehicle = Pose2{}, .rate_hz = 10.0};
+  const DriveOptions options{.pose_frame = PoseFrame{}, .rate_hz = 10.0};
   EXPECT_NE(fault_of("0 1 2 0 0 0 0 1\n1 1 2 0 0 0 0 2\n", options).find("a drive:2:"),
             std::string::npos);
   EXPECT_NE(fault_of("0 1 2 0 0 0 0 1\n0 1 2 0 0 0 0 1\n", options).find("a drive:2: time"),
@@ -154,11 +154,80 @@ TEST(DriveFile, SaysThatALogOfAnotherKindIsOne) {
   EXPECT_NE(fault_of("x,MCAP\n", {}).find("column t_s"), std::string::npos);
 }
 
+/// Along the circle of 20 m, as a camera sees it that sits `seen` in the vehicle: x to the right, y
+/// down, z ahead of where it began, 1.6 m above the ground.
+std::string circle_as_kitti(const Pose2& seen) {
+  std::string text;
+  for (int i = 0; i < 50; ++i) {
+    const double heading_rad = 0.02 * i;
+    const Pose2 axle{20.0 * std::sin(heading_rad), -20.0 * std::cos(heading_rad), heading_rad};
+    const Eigen::Vector2d at = axle * Eigen::Vector2d(seen.x_m, seen.y_m);
+    const double c = std::cos(heading_rad + seen.heading_rad);
+    const double s = std::sin(heading_rad + seen.heading_rad);
+    // Its z axis is ahead, (s to the left, c ahead); its x axis is to the right of that.
+    text += fmt::format("{} 0 {} {} 0 1 0 -1.6 {} 0 {} {}\n", c, -s, -at.y(), s, c, at.x());
+  }
+  return text;
+}
+
+TEST(DriveFile, OfACameraIsTurnedUpright) {
+  for (const Pose2 seen : {Pose2{0, 0, 0}, Pose2{1.08, -0.5, 0.1}}) {
+    const auto drive = parse_drive(circle_as_kitti(seen), "a drive",
+                                   {.pose_frame = PoseFrame{seen, true}, .rate_hz = 10.0});
+    ASSERT_EQ(drive.points().size(), 50u);
+    for (int i = 0; i < 50; ++i) {
+      const auto& row = drive.points()[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(row.x_m, 20.0 * std::sin(0.02 * i), 1e-9);
+      EXPECT_NEAR(row.y_m, -20.0 * std::cos(0.02 * i), 1e-9);
+      EXPECT_NEAR(row.heading_rad, 0.02 * i, 1e-9);
+      EXPECT_NEAR(row.speed_mps, 4.0, 0.01) << i;
+    }
+  }
+}
+
+/// Two steps of a second each, to the side and along z, in TUM's lines.
+std::string tum_along_z(double side_m, double along_z_m) {
+  return fmt::format("0 0 0 0 0 0 0 1\n1 {0} 0 {1} 0 0 0 1\n2 {2} 0 {3} 0 0 0 1\n", side_m,
+                     along_z_m, 2.0 * side_m, 2.0 * along_z_m);
+}
+
+TEST(DriveFile, ThatGoesAlongZIsACameras) {
+  const DriveOptions upright{.pose_frame = PoseFrame{}}, camera{.pose_frame = PoseFrame{{}, true}};
+  const std::string fault = fault_of(tum_along_z(0.1, 5.0), upright);
+  EXPECT_NE(fault.find("--pose-frame camera"), std::string::npos) << fault;
+  EXPECT_EQ(fault.find('\n'), std::string::npos);
+  EXPECT_EQ(fault_of(tum_along_z(0.1, 5.0), camera), "");
+  // 0.8 of the way is along z; and what is under 5 m may be noise.
+  EXPECT_EQ(fault_of(tum_along_z(3.0, 4.0), upright), "");
+  EXPECT_EQ(fault_of(tum_along_z(0.0, 2.4), upright), "");
+  EXPECT_NE(fault_of(tum_along_z(0.0, 2.6), upright), "");
+}
+
+TEST(DriveFile, OfASolutionIsNoCameras) {
+  const std::string solution = point_mass(point_mass_state(0, 5.0, 0.0, 1.0));
+  EXPECT_NE(
+      fault_of(solution, {.pose_frame = PoseFrame{{}, true}, .rate_hz = 10.0}).find("no camera's"),
+      std::string::npos);
+}
+
+TEST(PoseFrame, TakesACameraOverTheRearAxleOrElsewhere) {
+  EXPECT_TRUE(pose_frame("camera", {})->is_camera);
+  EXPECT_EQ(pose_frame("camera", {})->pose_in_vehicle.x_m, 0.0);
+  const auto offset = pose_frame("camera:1.08,-0.5,0.1", {});
+  ASSERT_TRUE(offset);
+  EXPECT_TRUE(offset->is_camera);
+  EXPECT_EQ(offset->pose_in_vehicle.x_m, 1.08);
+  EXPECT_EQ(offset->pose_in_vehicle.y_m, -0.5);
+  EXPECT_EQ(offset->pose_in_vehicle.heading_rad, 0.1);
+  EXPECT_FALSE(pose_frame("1.08,-0.5", {})->is_camera);
+}
+
 TEST(PoseFrame, TakesWordsAndPlaces) {
-  EXPECT_EQ(pose_frame("rear-axle", {})->x_m, 0.0);
-  EXPECT_NEAR(pose_frame("centre", {})->x_m, 0.5 * 4.508 - 0.8312829, 1e-12);
-  EXPECT_EQ(pose_frame("1.5,-2,0.25", {})->heading_rad, 0.25);
-  for (const char* words : {"", "middle", "1", "1,2,3,4", "1,2,", "nan,0"}) {
+  EXPECT_EQ(pose_frame("rear-axle", {})->pose_in_vehicle.x_m, 0.0);
+  EXPECT_NEAR(pose_frame("centre", {})->pose_in_vehicle.x_m, 0.5 * 4.508 - 0.8312829, 1e-12);
+  EXPECT_EQ(pose_frame("1.5,-2,0.25", {})->pose_in_vehicle.heading_rad, 0.25);
+  for (const char* words :
+       {"", "middle", "1", "1,2,3,4", "1,2,", "nan,0", "camera:", "camera:1", "cameras"}) {
     EXPECT_FALSE(pose_frame(words, {})) << words;
   }
 }
