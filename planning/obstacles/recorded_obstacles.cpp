@@ -293,12 +293,14 @@ std::vector<ObstacleInSource> recorded_obstacles(const Recorded& from,
   return {obstacle};
 }
 
+std::optional<long> initial_step(const map::commonroad::Scenario& scenario) {
+  if (scenario.planning_problems.empty()) return std::nullopt;
+  return scenario.planning_problems.front().initial_state.time_step.least;
+}
+
 std::vector<ObstacleInSource> recorded_boxes(const map::commonroad::Scenario& scenario,
-                                             const std::string& name) {
-  RecordingClock clock{.start_step = 0, .step_s = scenario.time_step_s};
-  if (!scenario.planning_problems.empty()) {
-    clock.start_step = scenario.planning_problems.front().initial_state.time_step.least;
-  }
+                                             long start_step, const std::string& name) {
+  const RecordingClock clock{.start_step = start_step, .step_s = scenario.time_step_s};
   std::vector<ObstacleInSource> boxes;
   for (const Recorded& obstacle : scenario.obstacles) {
     for (ObstacleInSource& box : RecordedBoxes(name, obstacle, clock).take()) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,20 +30,23 @@ struct RecordingClock {
 std::vector<ObstacleInSource> recorded_obstacles(const map::commonroad::Obstacle& from,
                                                  const RecordingClock& clock);
 
+/// The initial time step of the first planning problem; none without one.
+std::optional<long> initial_step(const map::commonroad::Scenario& scenario);
+
 /// The obstacles of a CommonRoad file as boxes over time that hold all that the file says of them,
-/// for a proof; second 0 is the initial time step of its first planning problem, else
-/// time step 0.
+/// for a proof.
 ///
 /// A trajectory is one box along its heading, linear between its states, there from the first to
 /// the last; without a prediction it stands for ever. Each part of an occupancy stands from the
 /// start of its first time step to the end of its last, and the initial state before it for its
 /// own. An environment obstacle stands for ever. A polygon is held by the least rectangle along one
 /// of its edges, a circle by its square. Of several boxes the ids get numbers: 42.1, 42.2.
-/// @param name  stands for the file in messages.
+/// @param start_step  that is second 0.
+/// @param name        stands for the file in messages.
 /// @throws InputError if an obstacle cannot be held so: a state that gives regions or intervals,
 ///         states that do not follow each other, nothing that says where it is.
 std::vector<ObstacleInSource> recorded_boxes(const map::commonroad::Scenario& scenario,
-                                             const std::string& name);
+                                             long start_step, const std::string& name);
 
 /// A rectangle of CommonRoad, in the frame that it is given in.
 geometry::Rectangle rectangle_of(const map::commonroad::RectangleShape& shape);

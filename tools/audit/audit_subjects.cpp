@@ -200,11 +200,14 @@ AuditSubject AuditSubjects::lane(const map::RoadMap& road_map) const {
 }
 
 std::vector<ObstacleInSource> read_moving_obstacles(const std::filesystem::path& file,
-                                                    const Inputs& inputs) {
+                                                    const Inputs& inputs,
+                                                    std::optional<long> start_step) {
   if (is_common_road(file)) {
     const std::string name = map::input_name(file);
-    return planning::recorded_boxes(map::commonroad::parse_scenario(map::read_file(file), name),
-                                    name);
+    const map::commonroad::Scenario scenario =
+        map::commonroad::parse_scenario(map::read_file(file), name);
+    return planning::recorded_boxes(
+        scenario, start_step.value_or(planning::initial_step(scenario).value_or(0)), name);
   }
   const std::string start = map::read_file_start(file, 4096);
   const std::size_t sign = start.find_first_not_of(" \t\r\n");

@@ -120,11 +120,12 @@ std::shared_ptr<const planning::RoadSurface> made_surface(const planning::Surfac
       planning::road_surface(planning::surface_polygons(rule, {}, any_reach_m), rule.seam_m));
 }
 
-std::vector<planning::LightCycle> recorded_lights(const std::filesystem::path& file) {
+std::vector<planning::LightCycle> recorded_lights(const std::filesystem::path& file,
+                                                  long start_step) {
   if (file.empty() || map::is_stream(file)) return {};
   if (is_common_road(file)) {
     return light_cycles(
-        map::commonroad::parse_scenario(map::read_file(file), map::input_name(file)), 0);
+        map::commonroad::parse_scenario(map::read_file(file), map::input_name(file)), start_step);
   }
   const std::string start = map::read_file_start(file, 4096);
   const std::size_t sign = start.find_first_not_of(" \t\r\n");

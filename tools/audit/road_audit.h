@@ -49,9 +49,10 @@ planning::SurfaceRule surface_rule(const std::string& words, const map::RoadMap*
 /// The surface of a rule that does not depend on the drive; null for the others.
 std::shared_ptr<const planning::RoadSurface> made_surface(const planning::SurfaceRule& rule);
 
-/// What lights show, as far as files say: a CommonRoad map, a scenario (`.json`, `.xml`). In its
-/// time.
-std::vector<planning::LightCycle> recorded_lights(const std::filesystem::path& file);
+/// What lights show, as far as files say: a CommonRoad map, a scenario (`.json`, `.xml`).
+/// @param start_step  of CommonRoad, that is second 0 (`second_0_step`).
+std::vector<planning::LightCycle> recorded_lights(const std::filesystem::path& file,
+                                                  long start_step);
 
 /// What was found of a drive about the road.
 struct RoadAudit {

@@ -19,6 +19,8 @@ namespace fs = std::filesystem;
 using geometry::Pose2;
 using geometry::TrajectoryPoint;
 
+constexpr std::size_t kStart = 4096;  // of a file, by which its format is told
+
 /// A format of drives that are no tables: how it begins, and who reads it.
 struct DriveFormat {
   bool (*begins)(std::string_view bytes);
@@ -207,9 +209,13 @@ geometry::Trajectory parse_drive(std::string_view bytes, const std::string& name
   return drive_of(format->parse(bytes, name, options), name, options);
 }
 
+bool is_solution(const fs::path& file) {
+  if (fs::is_directory(file) || map::is_log(file)) return false;
+  return begins_as_solution(map::read_file_start(file, kStart));
+}
+
 bool is_drive_table(const fs::path& file) {
-  constexpr std::size_t start = 4096;
-  return !map::is_log(file) && format_of(map::read_file_start(file, start)) == nullptr;
+  return !map::is_log(file) && format_of(map::read_file_start(file, kStart)) == nullptr;
 }
 
 }  // namespace roadbed::tools::files

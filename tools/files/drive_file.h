@@ -32,6 +32,9 @@ geometry::Trajectory read_drive(const std::filesystem::path& file, const DriveOp
 geometry::Trajectory parse_drive(std::string_view bytes, const std::string& name,
                                  const DriveOptions& options);
 
+/// Whether a drive is a CommonRoad solution; a folder is none.
+bool is_solution(const std::filesystem::path& file);
+
 /// Whether a drive is a table as `write_trajectory_csv` writes it, which needs no options.
 bool is_drive_table(const std::filesystem::path& file);
 

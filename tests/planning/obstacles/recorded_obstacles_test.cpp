@@ -16,12 +16,15 @@ namespace {
 
 using testing::HasSubstr;
 
+map::commonroad::Scenario scenario_of(const std::string& elements) {
+  return map::commonroad::parse_scenario(
+      "<commonRoad timeStepSize=\"0.1\" commonRoadVersion=\"2020a\">" + elements + "</commonRoad>",
+      "made.xml");
+}
+
 std::vector<ObstacleInSource> boxes_of(const std::string& elements) {
-  return recorded_boxes(map::commonroad::parse_scenario(
-                            "<commonRoad timeStepSize=\"0.1\" commonRoadVersion=\"2020a\">" +
-                                elements + "</commonRoad>",
-                            "made.xml"),
-                        "made.xml");
+  const map::commonroad::Scenario scenario = scenario_of(elements);
+  return recorded_boxes(scenario, initial_step(scenario).value_or(0), "made.xml");
 }
 
 std::string refusal_of(const std::string& elements) {

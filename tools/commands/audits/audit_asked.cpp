@@ -1,13 +1,16 @@
 #include "roadbed/tools/commands/audits/audit_asked.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
+#include "roadbed/tools/audit/audit_clock.h"
 #include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/audited_drive.h"
 #include "roadbed/tools/commands/occupancy/cloud_inputs.h"
 #include "roadbed/tools/simulation/scenario.h"
+#include "roadbed/tools/simulation/world.h"
 
 namespace roadbed::tools::inline commands::inline audits {
 namespace {
@@ -61,7 +64,9 @@ std::vector<Argument> AuditAsked::declare(Arguments& arguments) {
            "Dynamic obstacles beside the occupancy: a scenario (.json, CommonRoad .xml), or boxes "
            "over time (.csv: t_s,id,x_m,y_m,heading_rad,length_m,width_m, poses of the "
            "centre; an id of one row stands for ever, one of several is there from its "
-           "first to its last), in the drive's time and coordinates")
+           "first to its last), in the drive's time and coordinates. Second 0 of a CommonRoad "
+           "file, also of lights, is its planning problem's initial step, as simulate writes "
+           "drives, else step 0; beside a CommonRoad solution, which has absolute steps, step 0")
       .reads(files_named_by_scenario)
       .ending(".json .xml .csv");
   declare_question(arguments);
@@ -186,6 +191,15 @@ void AuditAsked::take_road() {
   if (on_.empty()) on_ = "drivable";
 }
 
+void AuditAsked::take_drive(const std::filesystem::path& file) {
+  start_step_ = second_0_step(file, std::array{obstacles_, map_});
+}
+
+bool AuditAsked::shifts_obstacles() const {
+  return !obstacles_.empty() && is_common_road(obstacles_) &&
+         second_0_step({}, std::array{obstacles_}) != start_step_;
+}
+
 Vehicle AuditAsked::read_vehicle() const {
   return vehicle_.empty() ? Vehicle{} : tools::read_vehicle(vehicle_);
 }
@@ -196,7 +210,9 @@ AuditQuestion AuditAsked::question(const Vehicle& vehicle, const map::RoadMap* r
                          .ground = ground_rule(ground_, road_map),
                          .options = options_,
                          .certifies = certifies};
-  if (!obstacles_.empty()) question.moving_in_source = read_moving_obstacles(obstacles_, inputs);
+  if (!obstacles_.empty()) {
+    question.moving_in_source = read_moving_obstacles(obstacles_, inputs, start_step_);
+  }
   return question;
 }
 
@@ -206,7 +222,7 @@ RoadQuestion AuditAsked::road_question(const map::RoadMap* road_map) const {
   road.made = made_surface(road.surface);
   road.counted = rules_of(rules_);
   for (const auto& file : {map_, obstacles_}) {
-    const std::vector<planning::LightCycle> lights = recorded_lights(file);
+    const std::vector<planning::LightCycle> lights = recorded_lights(file, start_step_);
     road.lights.insert(road.lights.end(), lights.begin(), lights.end());
   }
   return road;

@@ -39,6 +39,14 @@ class AuditAsked {
   /// That the drive is on the map's drivable surface, where nothing else is said of the road.
   void take_road();
 
+  /// What the file of the drives says of the question: which time is second 0.
+  /// @param file  or a folder of them; empty: swept.
+  /// @throws InputError if it, or the scenario, is unusable.
+  void take_drive(const std::filesystem::path& file);
+  /// Whether dynamic obstacles are at other times than their file alone says.
+  /// @throws InputError if that is unusable.
+  bool shifts_obstacles() const;
+
   bool asks() const { return !occupancy_.empty() || about_road(); }
   bool about_road() const { return !on_.empty(); }
   const planning::AuditOptions& options() const { return options_; }
@@ -80,6 +88,7 @@ class AuditAsked {
   FilterArguments filter_;
   planning::AuditOptions options_;
   std::string ground_, on_, rules_;
+  long start_step_ = 0;  // of CommonRoad, second 0 of the drive
   double from_height_m_ = map::HeightBand{}.from_m;
   double margin_m_ = 0.0, seam_m_ = planning::SurfaceRule{}.seam_m;
 };

@@ -67,6 +67,8 @@ class AuditCommand : public Command {
     }
     outputs_.check(asked_, subjects_);
     const LogScene of_log = subjects_.log().empty() ? LogScene() : take_log(common);
+    asked_.take_drive(subjects_.file());
+    outputs_.check_clock(asked_);
     AuditScene scene = audit_scene(asked_, outputs_.certifies(), common);
     if (of_log.occupancy == nullptr && asked_.leaves_obstacles() && !common.quiet) {
       fmt::print(streams.err,

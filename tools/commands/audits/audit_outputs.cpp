@@ -135,6 +135,15 @@ void AuditOutputs::check(const AuditAsked& asked, const AuditSubjects& subjects)
   if (!saves_drive()) refuse_certificate_of_logs(subjects);
 }
 
+// Who checks it reads them in the time of their own planning problem.
+void AuditOutputs::check_clock(const AuditAsked& asked) const {
+  if (!certifies() || saves_obstacles() || !asked.shifts_obstacles()) return;
+  throw map::InputError({.file = map::input_name(asked.obstacles_file()),
+                         .found = "begins at another time step than second 0 of the drive",
+                         .needed = "--save-obstacles beside --certificate",
+                         .remedy = "give it"});
+}
+
 void AuditOutputs::check_for_folder() const {
   if (svg_.empty() && mcap_.empty() && certificate_.empty() && !saves_drive() &&
       !saves_occupancy() && !saves_obstacles()) {

@@ -27,6 +27,10 @@ class AuditOutputs {
   /// @throws OutputError, InputError
   void check(const AuditAsked& asked, const AuditSubjects& subjects) const;
 
+  /// @throws InputError if a certificate would be about obstacles at other times than their file
+  ///         says. @pre `asked` has taken the drive.
+  void check_clock(const AuditAsked& asked) const;
+
   /// @throws InputError if an output is about one drive.
   void check_for_folder() const;
 

@@ -49,6 +49,7 @@ class ReportDriveCommand : public Command {
   Exit run(const Streams& streams, const CommonOptions& common) override {
     map::check_writable(output_, force_);
     if (!mcap_.empty()) map::check_writable(mcap_, force_);
+    asked_.take_drive(drive_);
     AuditScene scene = audit_scene(asked_, false, common);
     scene.drive_file = drive_;
     scene.command = "roadbed report drive " + drive_.string();
