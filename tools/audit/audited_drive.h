@@ -38,8 +38,9 @@ struct AuditedDrive {
   std::string name;
   std::string fault = {};  ///< why it could not be audited; empty: it was
   geometry::Trajectory drive = {};
-  bool has_occupancy = true;        ///< whether it was audited against one
-  planning::DriveAudit audit = {};  ///< against the occupancy
+  std::string vehicle_of_drive = {};  ///< that its file names, if that was audited: "commonroad:3"
+  bool has_occupancy = true;          ///< whether it was audited against one
+  planning::DriveAudit audit = {};    ///< against the occupancy
   std::optional<RoadAudit> road = {};
 
   bool is_clear() const { return outcome() == "clear"; }

@@ -35,6 +35,11 @@ geometry::Trajectory parse_drive(std::string_view bytes, const std::string& name
 /// Whether a drive is a CommonRoad solution; a folder is none.
 bool is_solution(const std::filesystem::path& file);
 
+/// The vehicle that a solution names, as `--vehicle` takes it: "commonroad:3".
+/// @pre is_solution(file)
+/// @throws InputError if it names none.
+std::string vehicle_of_solution(const std::filesystem::path& file);
+
 /// Whether a drive is a table as `write_trajectory_csv` writes it, which needs no options.
 bool is_drive_table(const std::filesystem::path& file);
 

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <optional>
 
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/xml.h"
+#include "roadbed/tools/files/drive_file.h"
 #include "roadbed/tools/files/drive_formats.h"
 #include "roadbed/tools/files/vehicle_file.h"
 
@@ -52,14 +54,14 @@ std::vector<DrivePose> with_held_headings(const std::vector<SolutionState>& stat
 }
 
 /// "KS2:SM1:…": the vehicle 2 of CommonRoad's.
-geometry::VehicleShape vehicle_of(const map::XmlDocument& xml) {
+std::string vehicle_of(const map::XmlDocument& xml) {
   const std::string id = xml.text(xml.root(), "benchmark_id");
   const std::size_t digit = id.find_first_of("0123456789:");
   if (digit == std::string::npos || std::isdigit(static_cast<unsigned char>(id[digit])) == 0) {
     xml.refuse(xml.root(), "benchmark_id \"" + id + "\" names no vehicle", "as in KS2:SM1:…",
                "write the solution anew");
   }
-  return read_vehicle_shape("commonroad:" + id.substr(digit, 1));
+  return "commonroad:" + id.substr(digit, 1);
 }
 
 }  // namespace
@@ -68,12 +70,17 @@ bool begins_as_solution(std::string_view bytes) {
   return bytes.substr(0, 4096).find("<CommonRoadSolution") != std::string_view::npos;
 }
 
+std::string vehicle_of_solution(const std::filesystem::path& file) {
+  return vehicle_of(map::XmlDocument(map::read_file(file), map::input_name(file)));
+}
+
 DrivePoses parse_solution(std::string_view bytes, const std::string& name,
                           const DriveOptions& options) {
   const double step_s = needed_step_s(options, name, "a CommonRoad solution");
   const map::XmlDocument xml{std::string(bytes), name};
   DrivePoses read{.unit = "line",
-                  .pose_in_vehicle = pose_frame("centre", vehicle_of(xml))->pose_in_vehicle};
+                  .pose_in_vehicle =
+                      pose_frame("centre", read_vehicle_shape(vehicle_of(xml)))->pose_in_vehicle};
   if (is_of_camera(options)) {
     xml.refuse(xml.root(), "has poses in the plane, and no camera's", "another --pose-frame",
                "leave it out: they are of the middle of its vehicle's body");

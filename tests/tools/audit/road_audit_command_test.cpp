@@ -14,6 +14,7 @@ namespace roadbed::tests {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 /// Drives in a square field of 40 m, and on the town's first road.
 class RoadAuditCommand : public testing::Test {
@@ -61,6 +62,44 @@ TEST_F(RoadAuditCommand, NeedsNoOccupancyAndSaysClearWithStatus0) {
   // The rear at the start, the front at the end: 4.1687171 m and 40 m − 30 m − 3.6767171 m.
   EXPECT_NEAR(json["surface"]["least_margin_m"].get<double>(), 4.1687171, 0.02);
   EXPECT_LE(json["surface"]["proven_margin_m"].get<double>(), 4.1687171);
+}
+
+// Vehicle 3 is 1.844 m wide and vehicle 2 is 1.61 m, in a lane of 1.76 m.
+
+TEST_F(RoadAuditCommand, AuditsTheVehicleThatASolutionNames) {
+  const std::string lane = folder_.write("lane.geojson", R"({"type":"FeatureCollection",
+    "features":[{"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":
+    [[[0,-0.88],[40,-0.88],[40,0.88],[0,0.88],[0,-0.88]]]}}]})");
+  const auto solution = [&](const std::string& model) {
+    const auto state = [](int step, int x_m) {
+      return "<ksState><x>" + std::to_string(x_m) +
+             "</x><y>0</y><steeringAngle>0</steeringAngle><velocity>10</velocity>"
+             "<orientation>0</orientation><time>" +
+             std::to_string(step) + "</time></ksState>";
+    };
+    return folder_.write(model + ".xml", "<CommonRoadSolution benchmark_id=\"" + model +
+                                             ":SM1:X:2020a\"><ksTrajectory planningProblem=\"1\">" +
+                                             state(0, 10) + state(10, 20) +
+                                             "</ksTrajectory></CommonRoadSolution>");
+  };
+  const auto on_lane = [&](const std::string& drive, std::vector<std::string> more) {
+    more.insert(more.begin(), {"--on", "area:" + lane, "--trajectory", drive, "--rate", "10"});
+    return audit(more);
+  };
+  const ProgramRun wide = on_lane(solution("KS3"), {});
+  EXPECT_EQ(wide.status, 1) << wide.err;
+  EXPECT_THAT(wide.out, HasSubstr("vehicle          commonroad:3, which the solution names\n"));
+  EXPECT_EQ(json_of(on_lane(solution("KS3"), {"--json"}))["vehicle"], "commonroad:3");
+
+  const ProgramRun given = on_lane(solution("KS3"), {"--vehicle", "commonroad:2"});
+  EXPECT_EQ(given.status, 0);
+  EXPECT_THAT(given.out, Not(HasSubstr("vehicle")));
+  EXPECT_THAT(given.err, HasSubstr("note: the solution is of commonroad:3, 4.569 m by 1.844 m; "
+                                   "audited is --vehicle commonroad:2, 4.508 m by 1.610 m"));
+  const ProgramRun same = on_lane(solution("KS3"), {"--vehicle", "commonroad:3"});
+  EXPECT_EQ(same.status, 1);
+  EXPECT_THAT(same.err, Not(HasSubstr("solution")));
+  EXPECT_EQ(on_lane(solution("KS2"), {}).status, 0);
 }
 
 TEST_F(RoadAuditCommand, SaysWhereADriveLeavesAndHowFar) {

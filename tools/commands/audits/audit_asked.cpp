@@ -1,5 +1,7 @@
 #include "roadbed/tools/commands/audits/audit_asked.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -36,6 +38,11 @@ std::string rules_fault(const std::string& words) {
   return count == known ? "" : "is not all, nor of markings, direction, speed and lights";
 }
 
+bool is_same_body(const geometry::VehicleShape& a, const geometry::VehicleShape& b) {
+  return a.length_m == b.length_m && a.width_m == b.width_m &&
+         a.rear_overhang_m == b.rear_overhang_m && a.height_m == b.height_m;
+}
+
 }  // namespace
 
 void AuditAsked::declare_occupancy(Arguments& arguments) {
@@ -52,7 +59,8 @@ std::vector<Argument> AuditAsked::declare(Arguments& arguments) {
   arguments.heading("Question");
   arguments
       .add("--vehicle", vehicle_,
-           std::string("Vehicle: ") + kVehicleSyntax + "; default: commonroad:2")
+           std::string("Vehicle: ") + kVehicleSyntax +
+               "; default: the one that a CommonRoad solution names, else commonroad:2")
       .reads()
       .ending(".json .yaml");
   arguments
@@ -193,6 +201,22 @@ void AuditAsked::take_road() {
 
 void AuditAsked::take_drive(const std::filesystem::path& file) {
   start_step_ = second_0_step(file, std::array{obstacles_, map_});
+  if (file.empty() || !is_solution(file)) return;
+  drives_vehicle_ = vehicle_of_solution(file);
+  is_drives_vehicle_ = vehicle_.empty();
+  if (is_drives_vehicle_) vehicle_ = drives_vehicle_;
+}
+
+std::string AuditAsked::vehicle_note(const Vehicle& vehicle) const {
+  if (drives_vehicle_.empty() || is_drives_vehicle_) return {};
+  const geometry::VehicleShape own = read_vehicle_shape(drives_vehicle_);
+  const bool has_more = !vehicle.circles.empty() || !vehicle.more.empty();
+  if (!has_more && is_same_body(own, vehicle.shape)) return {};
+  return fmt::format(
+      "note: the solution is of {}, {:.3f} m by {:.3f} m; audited is --vehicle {}, {:.3f} m by "
+      "{:.3f} m{}, its rear axle where that one's is\n",
+      drives_vehicle_, own.length_m, own.width_m, vehicle_.string(), vehicle.shape.length_m,
+      vehicle.shape.width_m, has_more ? " and more parts" : "");
 }
 
 bool AuditAsked::shifts_obstacles() const {

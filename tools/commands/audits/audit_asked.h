@@ -39,10 +39,15 @@ class AuditAsked {
   /// That the drive is on the map's drivable surface, where nothing else is said of the road.
   void take_road();
 
-  /// What the file of the drives says of the question: which time is second 0.
+  /// What the file of the drives says of the question: which time is second 0, and, if it is a
+  /// CommonRoad solution, the vehicle, where none is given.
   /// @param file  or a folder of them; empty: swept.
   /// @throws InputError if it, or the scenario, is unusable.
   void take_drive(const std::filesystem::path& file);
+  /// The vehicle that is audited as the solution names it; empty: it is not from there.
+  std::string vehicle_of_drive() const { return is_drives_vehicle_ ? vehicle_.string() : ""; }
+  /// In a line, that the vehicle given has another shape than the solution's; empty: it has not.
+  std::string vehicle_note(const Vehicle& vehicle) const;
   /// Whether dynamic obstacles are at other times than their file alone says.
   /// @throws InputError if that is unusable.
   bool shifts_obstacles() const;
@@ -85,6 +90,8 @@ class AuditAsked {
   std::optional<Argument> clearance_argument_, inflate_argument_, unknown_argument_,
       least_measured_argument_, from_height_argument_, margin_argument_, seam_argument_;
   std::filesystem::path occupancy_, vehicle_, map_, obstacles_;
+  std::string drives_vehicle_;      // that a solution names
+  bool is_drives_vehicle_ = false;  // whether it is the one audited
   FilterArguments filter_;
   planning::AuditOptions options_;
   std::string ground_, on_, rules_;

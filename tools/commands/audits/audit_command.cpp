@@ -187,7 +187,10 @@ class AuditCommand : public Command {
 
   Exit run_one(const AuditSubject& subject, const AuditScene& scene, const Streams& streams,
                const CommonOptions& common) const {
-    AuditedDrive audited{.name = subject.name, .drive = subject.drive()};
+    AuditedDrive audited{.name = subject.name,
+                         .drive = subject.drive(),
+                         .vehicle_of_drive = asked_.vehicle_of_drive()};
+    if (!common.quiet) streams.err << scene.vehicle_note;
     if (!common.quiet) note_curvature(audited, scene, streams.err);
     audit_one(scene.demand(), audited, [&](const planning::GroundUnder& ground) {
       if (common.quiet) return;

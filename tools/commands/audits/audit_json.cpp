@@ -160,6 +160,7 @@ Json audit_json(const AuditedDrive& audited) {
   const geometry::Trajectory& drive = audited.drive;
   Json json;
   json["verdict"] = std::string(audited.outcome());
+  if (!audited.vehicle_of_drive.empty()) json["vehicle"] = audited.vehicle_of_drive;
   if (audited.has_occupancy) add_clearance(audited, json);
   json["stretches"] =
       judged_json(judged_stretches(audited.whole(), drive.start_s(), drive.end_s()));

@@ -66,6 +66,7 @@ AuditScene audit_scene(const AuditAsked& asked, bool certifies, const CommonOpti
   AuditScene scene{.asked = asked, .inputs = common.inputs};
   const Vehicle vehicle = asked.read_vehicle();
   scene.shape = vehicle.shape;
+  scene.vehicle_note = asked.vehicle_note(vehicle);
   if (!asked.map_file().empty()) scene.road_map = common.inputs->road_map(asked.map_file());
   scene.question = asked.question(vehicle, scene.road_map.get(), certifies, *common.inputs);
   if (asked.about_road()) scene.road = asked.road_question(scene.road_map.get());

@@ -23,6 +23,7 @@ struct AuditScene {
   std::shared_ptr<const Inputs> inputs;
   planning::AuditQuestion question = {};
   geometry::VehicleShape shape = {};
+  std::string vehicle_note = {};  ///< a line on the vehicle given, if it is not the drive's own
   std::shared_ptr<const map::OccupancySource> occupancy = nullptr;  ///< null: the road only
   std::shared_ptr<const map::RoadMap> road_map = nullptr;
   std::optional<RoadQuestion> road = {};  ///< none: the occupancy only

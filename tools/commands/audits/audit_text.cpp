@@ -128,6 +128,10 @@ std::string excursion_text(const planning::Excursion& out) {
 
 std::string audit_text(const AuditedDrive& audited) {
   std::string text = fmt::format("{:<17}{}\n", "verdict", audited.outcome());
+  if (!audited.vehicle_of_drive.empty()) {
+    text +=
+        fmt::format("{:<17}{}, which the solution names\n", "vehicle", audited.vehicle_of_drive);
+  }
   if (audited.has_occupancy) text += clearance_text(audited.audit.report);
   if (audited.road) {
     text += surface_text(*audited.road);
