@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
+#include <array>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/audit/audit_drive.h"
+#include "roadbed/tools/audit/audit_clock.h"
 #include "roadbed/tools/audit/audited_drive.h"
 #include "roadbed/tools/audit/certificate_file_check.h"
 #include "roadbed/tools/audit/certificate_json.h"
@@ -15,6 +18,7 @@
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/python/occupancy.h"
 #include "roadbed/tools/report/audit_pictures.h"
+#include "roadbed/tools/simulation/world.h"
 
 namespace roadbed::tools::inline python {
 namespace {
@@ -61,19 +65,47 @@ struct AuditArguments {
   planning::AuditOptions options;
 };
 
+// Without one, that of a CommonRoad solution.
+void take_vehicle(nb::handle given, Audit& audit) {
+  const std::string& named = audit.trajectory.vehicle_of_solution;
+  if (!given.is_none() || named.empty()) {
+    audit.vehicle = vehicle_of(given);
+    return;
+  }
+  audit.vehicle = {read_vehicle(named), named};
+  audit.audited.vehicle_of_drive = named;
+}
+
+// In the time of the drive. Whoever checks a certificate reads them in that of their own problem.
+void take_obstacles(nb::handle given, Audit& audit) {
+  if (given.is_none()) return;
+  const bool is_file = nb::isinstance<nb::str>(given) || nb::hasattr(given, "__fspath__");
+  if (!is_file) {
+    audit.obstacles = obstacles_of(given);
+    return;
+  }
+  const std::array files{path_of(given), audit.map_file};
+  const bool has_steps = !audit.trajectory.vehicle_of_solution.empty();
+  const long start_step = has_steps ? 0 : second_0_step({}, files);
+  audit.obstacles = obstacles_of(given, start_step);
+  const bool is_own_time =
+      !is_common_road(files[0]) || second_0_step({}, std::span(files).first(1)) == start_step;
+  if (!is_own_time) audit.obstacles.file.clear();
+}
+
 Audit audit(const Occupancy& occupancy, const AuditArguments& given) {
   Audit made{.occupancy = occupancy.source,
              .occupancy_file = occupancy.file,
              .trajectory = trajectory_of(given.trajectory),
-             .vehicle = vehicle_of(given.vehicle),
              .has_usual_vehicle = given.vehicle.is_none(),
-             .obstacles = obstacles_of(given.obstacles),
              .underside_m = given.from_height_m};
+  take_vehicle(given.vehicle, made);
   if (!given.map.is_none()) {
     const Map& map = nb::cast<const Map&>(given.map);
     made.road_map = map.road_map;
     made.map_file = map.file;
   }
+  take_obstacles(given.obstacles, made);
   const std::string ground = ground_text(given.ground);
   if (ground == "map" && !made.road_map) throw std::invalid_argument("ground: \"map\" needs a map");
   const nb::gil_scoped_release released;
@@ -106,7 +138,8 @@ void save_certificate(Audit& audit, nb::handle path, nb::handle trajectory) {
   require(!audit.trajectory.file.empty(), "say trajectory=, where the drive is to be written");
   require(audit.has_usual_vehicle || !audit.vehicle.file.empty(), "open the vehicle from its file");
   require(audit.obstacles.in_source.empty() || !audit.obstacles.file.empty(),
-          "give the obstacles as their file");
+          "give the obstacles as their file; as a table (.csv), if they are of a CommonRoad file "
+          "that begins at another time step than the drive's second 0");
   const nb::gil_scoped_release released;
   planning::AuditQuestion question = audit.question;
   question.certifies = true;
@@ -302,7 +335,9 @@ void bind_audits(nb::module_& module) {
               "'measured'] | None = None, from_height_m: float = 0.2) -> Audit"),
       "Proves that a drive keeps clear of occupied space and of what moves, or shows where it does "
       "not.\n\n"
-      "trajectory: rows (N, 4) to (N, 8), see Trajectory; clearance_m: less distance is a "
+      "trajectory: rows (N, 4) to (N, 8), see Trajectory; vehicle: by default that of a CommonRoad "
+      "solution, else CommonRoad's vehicle 2; obstacles: see read_obstacles, but beside such a "
+      "solution they have its absolute time steps; clearance_m: less distance is a "
       "conflict; "
       "inflate_m: margin around the vehicle; unknown: what space counts as that was not measured; "
       "least_measured: fraction of the space that the vehicle takes that has to be measured; "

@@ -69,7 +69,8 @@ DriveOptions drive_options(const std::string& topic, const std::string& frame, n
 /// Certificates are about tables only, which need no options.
 Trajectory drive_of_file(const std::filesystem::path& file, const DriveOptions& options) {
   const nb::gil_scoped_release released;
-  return {read_drive(file, options), is_drive_table(file) ? file : std::filesystem::path()};
+  return {read_drive(file, options), is_drive_table(file) ? file : std::filesystem::path(),
+          is_solution(file) ? vehicle_of_solution(file) : std::string()};
 }
 
 void bind_trajectory(nb::module_& module) {

@@ -3,6 +3,8 @@
 // Private to tools/python: vehicles, drives and what moves beside them.
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "roadbed/geometry/motion/trajectory.h"
@@ -16,6 +18,8 @@ namespace roadbed::tools::inline python {
 struct Trajectory {
   geometry::Trajectory drive;
   std::filesystem::path file = {};
+  /// That a CommonRoad solution names, whose times count from time step 0; empty: it is of none.
+  std::string vehicle_of_solution = {};
 };
 
 /// A vehicle, and the file that holds it.
@@ -37,6 +41,7 @@ struct Obstacles {
   std::vector<planning::ObstacleInSource> in_source;
   std::filesystem::path file = {};
 };
-Obstacles obstacles_of(nb::handle given);
+/// @param start_step  of CommonRoad, as of `read_moving_obstacles`.
+Obstacles obstacles_of(nb::handle given, std::optional<long> start_step = {});
 
 }  // namespace roadbed::tools::python

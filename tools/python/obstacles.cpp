@@ -48,12 +48,12 @@ Array2 poses_array(const ObstacleInSource& of) {
 
 }  // namespace
 
-Obstacles obstacles_of(nb::handle given) {
+Obstacles obstacles_of(nb::handle given, std::optional<long> start_step) {
   Obstacles obstacles;
   if (given.is_none()) return obstacles;
   if (nb::isinstance<nb::str>(given) || nb::hasattr(given, "__fspath__")) {
     obstacles.file = path_of(given);
-    obstacles.in_source = read_moving_obstacles(obstacles.file, Inputs());
+    obstacles.in_source = read_moving_obstacles(obstacles.file, Inputs(), start_step);
     return obstacles;
   }
   for (const nb::handle one : given) {
@@ -98,7 +98,8 @@ void bind_obstacles(nb::module_& module) {
       "read_obstacles", [](nb::handle path) { return obstacles_of(path).in_source; },
       nb::arg("path"),
       nb::sig("def read_obstacles(path: str | os.PathLike[str]) -> list[Obstacle]"),
-      "Those of a scenario (.json, CommonRoad .xml), or of boxes with times (.csv).");
+      "Those of a scenario (.json, CommonRoad .xml), or of boxes with times (.csv). Second 0 of "
+      "CommonRoad's is the initial time step of its planning problem, else step 0.");
 }
 
 }  // namespace roadbed::tools::python
