@@ -13,7 +13,6 @@
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/logs/foxglove_poses.h"
 #include "roadbed/map/logs/foxglove_schemas.h"
-#include "roadbed/map/logs/log_transforms.h"
 
 namespace roadbed::map::inline logs {
 namespace {
@@ -50,14 +49,18 @@ AskedTopic asked_topic(const std::string& text) {
 struct Candidate {
   std::vector<TimedPose> poses;
   std::vector<geometry::TrajectoryPoint> rows;
-  std::size_t planned = 0;  ///< trajectories, of which one is kept
-  std::string frame;
+  std::size_t planned = 0;   ///< trajectories, of which one is kept
+  bool is_of_poses = false;  ///< one pose a message, placed once it is chosen
 };
 
 class DriveSearch {
  public:
-  DriveSearch(std::string file, const std::string& topic, std::string option)
-      : file_(std::move(file)), option_(std::move(option)), asked_(asked_topic(topic)) {}
+  DriveSearch(std::string file, const std::string& topic, std::string option, DriveFrame frame)
+      : file_(std::move(file)),
+        option_(std::move(option)),
+        asked_(asked_topic(topic)),
+        frame_(frame),
+        poses_(file_, asked_.name, option_) {}
 
   LogVisitor visitor() {
     return {
@@ -66,12 +69,15 @@ class DriveSearch {
   }
 
   LogDrive result() {
+    poses_.finish();
     add_transforms();
+    for (const std::string& name : poses_.pose_topics()) candidates_[name].is_of_poses = true;
     if (!asked_.name.empty()) keep_asked(candidates_, asked_.name);
     keep_rows();
     for (const auto& [name, candidate] : candidates_) check_number(name, candidate.planned);
     std::erase_if(candidates_, [](const auto& entry) {
-      return entry.second.poses.empty() && entry.second.rows.empty();
+      const Candidate& candidate = entry.second;
+      return !candidate.is_of_poses && candidate.poses.empty() && candidate.rows.empty();
     });
     if (candidates_.empty()) {
       refuse(fmt::format("holds no drive{}: topics {}",
@@ -87,7 +93,7 @@ class DriveSearch {
     }
     auto& [name, candidate] = *candidates_.begin();
     if (asked_.number == 0) check_is_one(name, candidate.planned);
-    if (candidate.planned == 0) sort_by_stamp(candidate.poses);
+    if (candidate.is_of_poses) candidate.poses = poses_.drive_by(name, frame_);
     return {name, std::move(candidate.poses), std::move(candidate.rows)};
   }
 
@@ -115,9 +121,10 @@ class DriveSearch {
     const bool is_known = is_pose_type(topic.type) || is_transform_type(topic.type) ||
                           is_trajectory_type(topic.type) || topic.type == kDriveStateType;
     if (!is_known) return false;
-    // Static transforms have a topic of their own, which belongs to the one that is asked for.
-    const bool is_static = is_transform_type(topic.type) && LogTransforms::is_static(topic);
-    if (!asked_.name.empty() && !is_static && !is_asked_as(topic.name, asked_.name)) return false;
+    // Transforms go with the topic that is asked for.
+    if (!asked_.name.empty() && !is_asked_as(topic.name, asked_.name)) {
+      return is_transform_type(topic.type) && poses_.wants(topic);
+    }
     const std::string needed(encoding_of(topic.type));
     if (topic.encoding == needed) return true;
     if (needed == "protobuf") return false;  // as JSON or FlatBuffers
@@ -126,7 +133,9 @@ class DriveSearch {
   }
 
   void take(const LogTopic& topic, const LogMessage& message) {
-    if (is_transform_type(topic.type)) return transforms_.take(topic, message, file_);
+    if (is_transform_type(topic.type) || is_pose_type(topic.type)) {
+      return poses_.take(topic, message);
+    }
     Candidate& candidate = candidates_[topic.name];
     if (topic.type == kDriveStateType) {
       candidate.rows.push_back(parse_drive_state(topic, message, file_));
@@ -136,15 +145,7 @@ class DriveSearch {
       ++candidate.planned;
       const std::size_t kept = asked_.number == 0 ? 1 : asked_.number;
       if (candidate.planned == kept) candidate.poses = timed(parse_planned(message, file_).points);
-      return;
     }
-    PoseMessage read = parse_pose(topic, message, file_);
-    if (!candidate.frame.empty() && candidate.frame != read.frame) {
-      refuse(fmt::format("{} is in the frames {} and {}", topic.name, candidate.frame, read.frame),
-             "one", "record it anew");
-    }
-    candidate.frame = read.frame;
-    candidate.poses.push_back(read.at);
   }
 
   // Rows say all of the drive that other topics say in part.
@@ -155,8 +156,8 @@ class DriveSearch {
   }
 
   void add_transforms() {
-    if (!transforms_.finish(asked_.name)) return;
-    for (const auto& [topic, tree] : transforms_.trees()) {
+    if (poses_.transforms() == nullptr) return;
+    for (const auto& [topic, tree] : poses_.transforms()->trees()) {
       if (const auto body = body_of(*tree)) {
         const std::vector<std::string> way = tree->way_up(*body, file_, option_);
         candidates_[tree->topic_of(way)].poses = tree->poses(way);
@@ -194,22 +195,23 @@ class DriveSearch {
   AskedTopic asked_;
   std::vector<std::string> topics_;
   std::map<std::string, Candidate> candidates_;
-  LogTransforms transforms_;
+  DriveFrame frame_;
+  LogPoses poses_;
 };
 
 }  // namespace
 
 LogDrive drive_of_log(const GoThrough& go_through, const std::string& file,
-                      const std::string& topic, const std::string& option) {
-  DriveSearch search(file, topic, option);
+                      const std::string& topic, const std::string& option, DriveFrame frame) {
+  DriveSearch search(file, topic, option, frame);
   go_through(search.visitor());
   return search.result();
 }
 
 LogDrive drive_of_log(const std::filesystem::path& path, const std::string& topic,
-                      const std::string& option) {
+                      const std::string& option, DriveFrame frame) {
   return drive_of_log([&](const LogVisitor& visitor) { read_log(path, visitor); }, input_name(path),
-                      topic, option);
+                      topic, option, frame);
 }
 
 }  // namespace roadbed::map::logs

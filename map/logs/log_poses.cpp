@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
@@ -11,7 +12,7 @@
 namespace roadbed::map::inline logs {
 namespace {
 
-constexpr const char *kVehicle = "base_link", *kOption = "--pose-topic";
+constexpr const char* kVehicle = "base_link";
 
 /// With whatever namespace in front.
 bool is_of_vehicle(const std::string& frame) {
@@ -21,12 +22,12 @@ bool is_of_vehicle(const std::string& frame) {
 
 using Way = std::vector<std::string>;
 
-/// From a frame up to another one; none where that is not above it.
-std::optional<Way> way_to(const TransformTree& tree, const std::string& frame,
-                          const std::string& top, const std::string& file) {
-  Way way = tree.way_up(frame, file, kOption, top);
-  const std::string& reached = way.empty() ? frame : tree.parent_of(way.back());
-  return reached == top ? std::optional(std::move(way)) : std::nullopt;
+/// The vehicle's own frames that a frame may be mounted on: of its namespace, then of none.
+std::vector<std::string> bodies_near(const std::string& frame) {
+  const std::string name_space = frame.substr(0, frame.rfind('/') + 1);
+  std::vector<std::string> bodies{name_space + kVehicle};
+  if (!name_space.empty()) bodies.emplace_back(kVehicle);
+  return bodies;
 }
 
 PoseAt along(LogTransforms::Tree tree, Way way) {
@@ -44,10 +45,44 @@ PoseAt along(const TransformTree& above, Way up, LogTransforms::Tree below, Way 
   };
 }
 
+PoseAt inverse(PoseAt at) {
+  return [at = std::move(at)](std::int64_t stamp_ns) -> std::optional<Eigen::Isometry3d> {
+    const auto pose = at(stamp_ns);
+    if (!pose) return std::nullopt;
+    return pose->inverse();
+  };
+}
+
+/// Whether what stands there goes ahead at the same speed, however the vehicle turns.
+bool is_straight_ahead(const Eigen::Isometry3d& mount) {
+  constexpr double same = 1e-9;
+  return mount.linear().isIdentity(same) && std::abs(mount.translation().y()) <= same;
+}
+
+/// Poses of what stands at `mount` in their own frame.
+std::vector<TimedPose> moved(const std::vector<TimedPose>& poses, const PoseAt& mount) {
+  std::vector<TimedPose> found;
+  for (const TimedPose& at : poses) {
+    const auto pose = mount(at.stamp_ns);
+    if (!pose) continue;
+    found.push_back({at.stamp_ns, at.pose * *pose});
+    if (is_straight_ahead(*pose)) found.back().speed_mps = at.speed_mps;
+  }
+  return found;
+}
+
 }  // namespace
 
-LogPoses::LogPoses(std::string file, std::string topic)
-    : file_(std::move(file)), topic_(std::move(topic)) {}
+LogPoses::LogPoses(std::string file, std::string topic, std::string option)
+    : file_(std::move(file)), topic_(std::move(topic)), option_(std::move(option)) {}
+
+// From a frame up to another one; none where that is not above it.
+std::optional<Way> LogPoses::way_to(const TransformTree& tree, const std::string& frame,
+                                    const std::string& top) const {
+  Way way = tree.way_up(frame, file_, option_, top);
+  const std::string& reached = way.empty() ? frame : tree.parent_of(way.back());
+  return reached == top ? std::optional(std::move(way)) : std::nullopt;
+}
 
 bool LogPoses::wants(const LogTopic& topic) const {
   if (topic.encoding != encoding_of(topic.type)) return false;
@@ -59,7 +94,9 @@ void LogPoses::take(const LogTopic& topic, const LogMessage& message) {
   if (is_transform_type(topic.type)) return transforms_.take(topic, message, file_);
   const PoseMessage read = parse_pose(topic, message, file_);
   PoseTopic& poses = by_topic_[topic.name];
-  poses.child = read.child.empty() ? kVehicle : read.child;
+  const std::string child = read.child.empty() ? kVehicle : read.child;
+  if (!poses.child.empty() && poses.child != child) poses.other_child = poses.child;
+  poses.child = child;
   poses.above.add({read.frame, poses.child, read.at}, topic.name, false);
 }
 
@@ -68,10 +105,10 @@ void LogPoses::finish() {
   if (!topic_.empty()) keep_asked(by_topic_, topic_);
   for (auto& [name, poses] : by_topic_) {
     poses.above.sort();
-    TransformTree further = transforms_.static_of(name);
+    poses.below = transforms_.below(name);
+    TransformTree further = *poses.below;
     further.remove(poses.child);  // the topic says where that is
     poses.above.merge(std::move(further));
-    poses.below = transforms_.below(name);
   }
 }
 
@@ -85,15 +122,15 @@ std::vector<LogPoses::Source> LogPoses::sources_of(const std::string& frame) con
   std::vector<Source> found;
   for (const auto& [name, tree] : transforms_.trees()) {
     if (!transforms_count_) break;
-    Way way = tree->way_up(frame, file_, kOption);
+    Way way = tree->way_up(frame, file_, option_);
     if (!tree->leads_to_world(way) || ends_below_poses(tree->parent_of(way.back()))) continue;
     found.push_back({tree->topic_of(way), tree, along(tree, std::move(way))});
   }
   if (!found.empty()) return found;
   for (const auto& [name, poses] : by_topic_) {
-    std::optional<Way> way = way_to(*poses.below, frame, poses.child, file_);
+    std::optional<Way> way = way_to(*poses.below, frame, poses.child);
     if (!way) continue;
-    Way up = poses.above.way_up(poses.child, file_, kOption);
+    Way up = poses.above.way_up(poses.child, file_, option_);
     found.push_back(
         {name, poses.below, along(poses.above, std::move(up), poses.below, std::move(*way))});
   }
@@ -110,7 +147,7 @@ PoseAt LogPoses::of(const std::string& frame) const {
                     .element = "frame " + frame,
                     .found = fmt::format("{} say where it was", fmt::join(names, ", ")),
                     .needed = "one topic",
-                    .remedy = fmt::format("choose it by {}", kOption)});
+                    .remedy = fmt::format("choose it by {}", option_)});
 }
 
 PoseAt LogPoses::in_vehicle(const std::string& frame) const {
@@ -118,8 +155,41 @@ PoseAt LogPoses::in_vehicle(const std::string& frame) const {
   const auto& trees = transforms_.trees();
   if (frame == kVehicle || (sources.empty() && trees.size() != 1)) return {};
   const LogTransforms::Tree tree = sources.empty() ? trees.begin()->second : sources.front().below;
-  std::optional<Way> way = way_to(*tree, frame, kVehicle, file_);
+  std::optional<Way> way = way_to(*tree, frame, kVehicle);
   return way ? along(tree, std::move(*way)) : PoseAt();
+}
+
+std::vector<std::string> LogPoses::pose_topics() const {
+  std::vector<std::string> names;
+  for (const auto& [name, poses] : by_topic_) names.push_back(name);
+  return names;
+}
+
+PoseAt LogPoses::body_in_child(const PoseTopic& poses) const {
+  for (const std::string& body : bodies_near(poses.child)) {
+    if (body == poses.child) return {};
+    if (auto way = way_to(*poses.below, poses.child, body)) {
+      return inverse(along(poses.below, std::move(*way)));
+    }
+    if (auto way = way_to(*poses.below, body, poses.child)) {
+      return along(poses.below, std::move(*way));
+    }
+  }
+  return {};
+}
+
+std::vector<TimedPose> LogPoses::drive_by(const std::string& topic, DriveFrame frame) const {
+  const PoseTopic& by = by_topic_.at(topic);
+  if (!by.other_child.empty()) {
+    throw InputError({.file = file_,
+                      .element = topic,
+                      .found = "is of the frames " + by.other_child + " and " + by.child,
+                      .needed = "one",
+                      .remedy = "record it anew"});
+  }
+  std::vector<TimedPose> poses = by.above.poses(by.above.way_up(by.child, file_, option_));
+  const PoseAt mount = frame == DriveFrame::recorded ? PoseAt() : body_in_child(by);
+  return mount ? moved(poses, mount) : poses;
 }
 
 }  // namespace roadbed::map::logs

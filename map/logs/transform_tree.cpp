@@ -98,7 +98,9 @@ std::vector<TimedPose> TransformTree::poses(const std::vector<std::string>& way)
   const auto moving = lowest_moving(way);
   if (moving == way.end()) return found;
   for (const TimedPose& at_stamp : edges_.at(*moving).poses) {
-    if (const auto pose = at(way, at_stamp.stamp_ns)) found.push_back({at_stamp.stamp_ns, *pose});
+    if (const auto pose = at(way, at_stamp.stamp_ns)) {
+      found.push_back({at_stamp.stamp_ns, *pose, at_stamp.speed_mps});
+    }
   }
   return found;
 }

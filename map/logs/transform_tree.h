@@ -44,7 +44,8 @@ class TransformTree {
   std::optional<Eigen::Isometry3d> at(const std::vector<std::string>& way,
                                       std::int64_t stamp_ns) const;
 
-  /// The poses of the lowest frame that moves, at its own stamps, where all others are known.
+  /// The poses of the lowest frame that moves, at its own stamps and with its speeds, where all
+  /// others are known.
   std::vector<TimedPose> poses(const std::vector<std::string>& way) const;
 
   /// Whether a way leads to where points may be put together: a frame on it moves, or it ends in

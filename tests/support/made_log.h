@@ -39,4 +39,19 @@ inline std::string transform_message(std::int64_t stamp_ns, const std::string& p
   return cdr.bytes();
 }
 
+/// nav_msgs/msg/Odometry of a frame in another one, turned about z.
+inline std::string odometry_of(std::int64_t stamp_ns, const std::string& frame,
+                               const std::string& child, double x_m, double y_m, double heading_rad,
+                               double speed_mps) {
+  CdrWriter cdr;
+  cdr.put(static_cast<std::int32_t>(stamp_ns / 1'000'000'000));
+  cdr.put(static_cast<std::uint32_t>(stamp_ns % 1'000'000'000)).text(frame).text(child);
+  cdr.put(x_m).put(y_m).put(0.0);
+  cdr.put(0.0).put(0.0).put(std::sin(0.5 * heading_rad)).put(std::cos(0.5 * heading_rad));
+  for (int i = 0; i < 36; ++i) cdr.put(0.0);
+  cdr.put(speed_mps);
+  for (int i = 0; i < 5 + 36; ++i) cdr.put(0.0);
+  return cdr.bytes();
+}
+
 }  // namespace roadbed::tests

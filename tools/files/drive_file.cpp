@@ -192,7 +192,9 @@ double needed_step_s(const DriveOptions& options, const std::string& name,
 geometry::Trajectory read_drive(const fs::path& file, const DriveOptions& options) {
   const std::string name = map::input_name(file);
   if (map::is_log(file)) {
-    const map::LogDrive log = map::drive_of_log(file, options.topic);
+    const auto frame =
+        options.pose_frame ? map::DriveFrame::recorded : map::DriveFrame::vehicle;
+    const map::LogDrive log = map::drive_of_log(file, options.topic, "--topic", frame);
     return log.rows.empty() ? drive_of(of_log(log, options), name, options)
                             : drive_of_rows(log.rows, name);
   }

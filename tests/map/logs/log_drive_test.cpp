@@ -258,7 +258,113 @@ TEST(LogDrive, IsByTransformsOfSeveralTopicsWhereNoFrameStandsInTwo) {
   expect_starts_at(drive_in(log), "/body", 310.0);
 }
 
-TEST(LogDrive, OfATopicOfPosesDoesNotReadTransforms) {
+/// Ten rows at 10 Hz of base_link in `frame`, 1 m apart.
+std::vector<Recorded> odometry_in(const std::string& frame) {
+  std::vector<Recorded> log;
+  for (int i = 0; i < 10; ++i) {
+    log.push_back({"/odom", kOdometry,
+                   tests::odometry_of(kStart_ns + 100'000'000 * i, frame, "base_link", 1.0 * i, 0.0,
+                                      0.0, 10.0)});
+  }
+  return log;
+}
+
+TEST(LogDrive, OfPosesIsInTheMapWhereStaticTransformsLeadThere) {
+  std::vector<Recorded> log = odometry_in("odom");
+  log.push_back(
+      {"/tf_static", kTransforms, transform_message(0, "map", "odom", 5.0, 0.5 * std::acos(-1.0))});
+  for (const char* topic : {"", "/odom"}) {
+    const LogDrive drive = drive_in(log, topic);
+    ASSERT_EQ(drive.poses.size(), 10u);
+    for (int i = 0; i < 10; ++i) {
+      const TimedPose& at = drive.poses[static_cast<std::size_t>(i)];
+      EXPECT_NEAR((at.pose.translation() - Eigen::Vector3d(5.0, i, 0.0)).norm(), 0.0, 1e-12);
+      EXPECT_NEAR(at.pose.linear()(1, 0), 1.0, 1e-12) << "it heads to the left";
+      EXPECT_EQ(at.speed_mps, 10.0);
+    }
+  }
+}
+
+TEST(LogDrive, OfPosesIsInTheMapWhereMovingTransformsLeadThere) {
+  std::vector<Recorded> log = odometry_in("odom");
+  for (const auto& [at_ns, x_m] : {std::pair(0, 100.0), std::pair(500'000'000, 200.0)}) {
+    log.push_back(
+        {"/tf", kTransforms, transform_message(kStart_ns + at_ns, "map", "odom", x_m, 0.0)});
+  }
+  const LogDrive drive = drive_in(log);
+  EXPECT_EQ(drive.topic, "/odom");
+  ASSERT_EQ(drive.poses.size(), 6u) << "odom is known in the map for half a second";
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_NEAR(drive.poses[static_cast<std::size_t>(i)].pose.translation().x(), 100.0 + 21.0 * i,
+                1e-9);
+  }
+}
+
+TEST(LogDrive, OfPosesStaysInTheirFrameWhereNothingLeadsOn) {
+  std::vector<Recorded> log = odometry_in("map");
+  log.push_back({"/tf_static", kTransforms, transform_message(0, "world", "map", 1000.0, 0.0)});
+  EXPECT_EQ(drive_in(log).poses.front().pose.translation().x(), 0.0);
+  EXPECT_EQ(drive_in(odometry_in("odom")).poses.front().pose.translation().x(), 0.0);
+}
+
+/// base_link at 10 m, 20 m turned by 0.3, said of what is mounted 1.5 m ahead and turned by 0.5.
+Recorded odometry_of_imu() {
+  return {"/odom", kOdometry,
+          tests::odometry_of(kStart_ns, "map", "imu_link", 10.0 + 1.5 * std::cos(0.3),
+                             20.0 + 1.5 * std::sin(0.3), 0.8, 7.0)};
+}
+
+void expect_is_at(const TimedPose& at, double x_m, double y_m, double heading_rad) {
+  EXPECT_NEAR(at.pose.translation().x(), x_m, 1e-9);
+  EXPECT_NEAR(at.pose.translation().y(), y_m, 1e-9);
+  EXPECT_NEAR(std::atan2(at.pose.linear()(1, 0), at.pose.linear()(0, 0)), heading_rad, 1e-9);
+}
+
+TEST(LogDrive, OfAMountedFrameIsOfTheBody) {
+  const Recorded mount{"/tf_static", kTransforms,
+                       transform_message(0, "base_link", "imu_link", 1.5, 0.5)};
+  // The same, said the other way round: 1.5 m behind in a frame that is turned back by 0.5.
+  const Recorded step{"/tf_static", kTransforms,
+                      transform_message(0, "imu_link", "turned", 0.0, -0.5)},
+      back{"/tf_static", kTransforms, transform_message(0, "turned", "base_link", -1.5, 0.0)};
+  for (const std::vector<Recorded>& transforms : {std::vector{mount}, std::vector{step, back}}) {
+    std::vector<Recorded> log{odometry_of_imu()};
+    log.insert(log.end(), transforms.begin(), transforms.end());
+    const LogDrive drive = drive_in(log);
+    ASSERT_EQ(drive.poses.size(), 1u);
+    expect_is_at(drive.poses[0], 10.0, 20.0, 0.3);
+    EXPECT_FALSE(drive.poses[0].speed_mps) << "7 m/s are those of the mount's own axis";
+  }
+}
+
+TEST(LogDrive, KeepsSpeedsOfAFrameThatStandsStraightBehind) {
+  const LogDrive drive =
+      drive_in({{"/odom", kOdometry,
+                 tests::odometry_of(kStart_ns, "map", "base_footprint", 1.0, 2.0, 0.0, 7.0)},
+                {"/tf_static", kTransforms,
+                 transform_message(0, "base_footprint", "base_link", 0.25, 0.0)}});
+  expect_is_at(drive.poses.at(0), 1.25, 2.0, 0.0);
+  EXPECT_EQ(drive.poses[0].speed_mps, 7.0);
+}
+
+TEST(LogDrive, OfAMountedFrameIsAsRecordedWhereItsPlaceIsSaid) {
+  const std::vector<Recorded> log{
+      odometry_of_imu(),
+      {"/tf_static", kTransforms, transform_message(0, "base_link", "imu_link", 1.5, 0.5)}};
+  const LogDrive drive =
+      drive_of_log(tests::through(log, kStart_ns), "a log", "", "--topic", DriveFrame::recorded);
+  expect_is_at(drive.poses.at(0), 10.0 + 1.5 * std::cos(0.3), 20.0 + 1.5 * std::sin(0.3), 0.8);
+  EXPECT_EQ(drive.poses[0].speed_mps, 7.0);
+}
+
+TEST(LogDrive, OfOneTopicIsOfOneFrame) {
+  std::vector<Recorded> log = odometry_in("map");
+  log.push_back(odometry_of_imu());
+  EXPECT_NE(fault_of(log).find("/odom: is of the frames base_link and imu_link"), std::string::npos)
+      << fault_of(log);
+}
+
+TEST(LogDrive, OfATopicOfPosesDoesNotAskTransformsWhereItsFrameIs) {
   std::vector<Recorded> log;
   add_moving(log, "/tf", "odom", "base_link", 10.0);
   add_moving(log, "/tf", "world", "base_link", 500.0);

@@ -277,6 +277,17 @@ TEST(LogClouds, StandOnTheTopicOfPosesThatIsAskedForWhateverTransformsSayOfItsFr
   EXPECT_EQ(places_of(log, {"", "/odom"}), std::vector{1016.0});
 }
 
+TEST(LogClouds, StandWhereMovingTransformsAboveATopicOfPosesLead) {
+  std::vector<Recorded> log = with_odometry(one_ahead());
+  for (const int second : {0, 1}) {
+    log[second == 0 ? 1 : 3].bytes = tests::odometry_of(kStart_ns + 1'000'000'000 * second, "odom",
+                                                        "base_link", 10.0 * second, 0.0, 0.0, 10.0);
+  }
+  const double in_odom_m = places_of(log).at(0);
+  add_moving(log, "/tf", "map", "odom", 700.0);
+  EXPECT_NEAR(places_of(log).at(0), in_odom_m + 705.0, 1e-6);
+}
+
 TEST(LogClouds, InGapsOfThePosesAreLeftOut) {
   std::vector<Recorded> log;
   for (int i = 0; i <= 30; ++i) {
