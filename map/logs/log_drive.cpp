@@ -49,6 +49,7 @@ AskedTopic asked_topic(const std::string& text) {
 struct Candidate {
   std::vector<TimedPose> poses;
   std::vector<geometry::TrajectoryPoint> rows;
+  std::vector<std::string> notes;
   std::size_t planned = 0;   ///< trajectories, of which one is kept
   bool is_of_poses = false;  ///< one pose a message, placed once it is chosen
 };
@@ -93,8 +94,13 @@ class DriveSearch {
     }
     auto& [name, candidate] = *candidates_.begin();
     if (asked_.number == 0) check_is_one(name, candidate.planned);
-    if (candidate.is_of_poses) candidate.poses = poses_.drive_by(name, frame_);
-    return {name, std::move(candidate.poses), std::move(candidate.rows)};
+    if (candidate.is_of_poses) take_noted(poses_.drive_by(name, frame_), candidate);
+    if (candidate.poses.empty() && !candidate.notes.empty()) {
+      refuse(name + ": " + candidate.notes.front(), "transforms at the time of a pose",
+             "name another topic");
+    }
+    return {name, std::move(candidate.poses), std::move(candidate.rows), std::move(candidate.notes),
+            candidate.planned > 0};
   }
 
  private:
@@ -144,8 +150,14 @@ class DriveSearch {
     if (is_trajectory_type(topic.type)) {
       ++candidate.planned;
       const std::size_t kept = asked_.number == 0 ? 1 : asked_.number;
-      if (candidate.planned == kept) candidate.poses = timed(parse_planned(message, file_).points);
+      if (candidate.planned == kept)
+        take_noted(timed(parse_planned(message, file_).points), candidate);
     }
+  }
+
+  static void take_noted(NotedPoses found, Candidate& candidate) {
+    candidate.poses = std::move(found.poses);
+    candidate.notes = std::move(found.notes);
   }
 
   // Rows say all of the drive that other topics say in part.
@@ -160,7 +172,7 @@ class DriveSearch {
     for (const auto& [topic, tree] : poses_.transforms()->trees()) {
       if (const auto body = body_of(*tree)) {
         const std::vector<std::string> way = tree->way_up(*body, file_, option_);
-        candidates_[tree->topic_of(way)].poses = tree->poses(way);
+        take_noted(tree->poses(way), candidates_[tree->topic_of(way)]);
       } else if (!asked_.name.empty()) {
         refuse(fmt::format("{} has the frames {}", topic, fmt::join(tree->children(), ", ")), kBody,
                "name a topic of poses");
@@ -169,8 +181,9 @@ class DriveSearch {
   }
 
   // Planners often leave the times 0: they follow from the way and the speeds.
-  std::vector<TimedPose> timed(std::vector<TimedPose> points) const {
-    if (points.size() < 2 || points.back().stamp_ns != points.front().stamp_ns) return points;
+  NotedPoses timed(std::vector<TimedPose> points) const {
+    if (points.size() < 2 || points.back().stamp_ns != points.front().stamp_ns) return {points};
+    std::vector<std::string> notes;
     double t_s = 0.0;
     for (std::size_t i = 1; i < points.size(); ++i) {
       const Eigen::Vector3d step = points[i].pose.translation() - points[i - 1].pose.translation();
@@ -178,6 +191,9 @@ class DriveSearch {
           std::abs(points[i].speed_mps.value_or(0)) + std::abs(points[i - 1].speed_mps.value_or(0));
       constexpr double stands_mps = 1e-3;
       if (!(both_mps > stands_mps)) {  // it stands from here on
+        notes.push_back(fmt::format(
+            "{} of {} points left out: their speeds are 0, so nothing says when it is there",
+            points.size() - i, points.size()));
         points.resize(i);
         break;
       }
@@ -188,7 +204,7 @@ class DriveSearch {
       points[i].stamp_ns = std::llround(1e9 * t_s);
     }
     sort_by_stamp(points);
-    return points;
+    return {std::move(points), std::move(notes)};
   }
 
   std::string file_, option_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
@@ -59,15 +60,19 @@ bool is_straight_ahead(const Eigen::Isometry3d& mount) {
   return mount.linear().isIdentity(same) && std::abs(mount.translation().y()) <= same;
 }
 
-/// Poses of what stands at `mount` in their own frame.
-std::vector<TimedPose> moved(const std::vector<TimedPose>& poses, const PoseAt& mount) {
-  std::vector<TimedPose> found;
-  for (const TimedPose& at : poses) {
+/// Poses of the vehicle, which stands at `mount` in the frame of theirs.
+NotedPoses moved(NotedPoses of_child, const PoseAt& mount, const std::string& child) {
+  NotedPoses found{.notes = std::move(of_child.notes)};
+  const std::size_t all = of_child.poses.size();
+  for (const TimedPose& at : of_child.poses) {
     const auto pose = mount(at.stamp_ns);
     if (!pose) continue;
-    found.push_back({at.stamp_ns, at.pose * *pose});
-    if (is_straight_ahead(*pose)) found.back().speed_mps = at.speed_mps;
+    found.poses.push_back({at.stamp_ns, at.pose * *pose});
+    if (is_straight_ahead(*pose)) found.poses.back().speed_mps = at.speed_mps;
   }
+  std::ranges::copy(left_out_notes(all - found.poses.size(), all,
+                                   fmt::format("no transform between {} and {}", child, kVehicle)),
+                    std::back_inserter(found.notes));
   return found;
 }
 
@@ -178,7 +183,7 @@ PoseAt LogPoses::body_in_child(const PoseTopic& poses) const {
   return {};
 }
 
-std::vector<TimedPose> LogPoses::drive_by(const std::string& topic, DriveFrame frame) const {
+NotedPoses LogPoses::drive_by(const std::string& topic, DriveFrame frame) const {
   const PoseTopic& by = by_topic_.at(topic);
   if (!by.other_child.empty()) {
     throw InputError({.file = file_,
@@ -187,9 +192,16 @@ std::vector<TimedPose> LogPoses::drive_by(const std::string& topic, DriveFrame f
                       .needed = "one",
                       .remedy = "record it anew"});
   }
-  std::vector<TimedPose> poses = by.above.poses(by.above.way_up(by.child, file_, option_));
-  const PoseAt mount = frame == DriveFrame::recorded ? PoseAt() : body_in_child(by);
-  return mount ? moved(poses, mount) : poses;
+  NotedPoses of_child = by.above.poses(by.above.way_up(by.child, file_, option_));
+  if (frame == DriveFrame::recorded) return of_child;
+  if (const PoseAt mount = body_in_child(by)) return moved(std::move(of_child), mount, by.child);
+  if (!is_of_vehicle(by.child)) {
+    of_child.notes.push_back(
+        fmt::format("{} is of {}, taken for the rear axle, as no transform says where it is in {}; "
+                    "--pose-frame says it",
+                    topic, by.child, kVehicle));
+  }
+  return of_child;
 }
 
 }  // namespace roadbed::map::logs

@@ -49,11 +49,12 @@ class LogPoses {
   std::vector<std::string> pose_topics() const;
 
   /// Where the vehicle was by a topic of poses, at its stamps: in `map`, or as far up as transforms
-  /// lead from the topic's frame. Stamps at which a transform is not known are left out, and speeds
-  /// where base_link does not stand straight ahead of the frame that the topic names.
+  /// lead from the topic's frame. Stamps at which a transform is not known are left out, and said
+  /// in a note; speeds where base_link does not stand straight ahead of the frame that the topic
+  /// names.
   /// @pre the topic is one of `pose_topics()`.
   /// @throws InputError if it is of several frames, or a frame above has two parents.
-  std::vector<TimedPose> drive_by(const std::string& topic, DriveFrame frame) const;
+  NotedPoses drive_by(const std::string& topic, DriveFrame frame) const;
 
  private:
   struct PoseTopic {

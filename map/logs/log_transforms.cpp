@@ -34,7 +34,10 @@ void LogTransforms::take(const LogTopic& topic, const LogMessage& message,
 
 bool LogTransforms::finish(const std::string& asked) {
   for (auto* by_topic : {&moving_, &static_}) {
-    for (auto& [name, tree] : *by_topic) tree.sort();
+    for (auto& [name, tree] : *by_topic) {
+      tree.sort();
+      tree.hold_what_was_said_once();
+    }
   }
   const bool is_one_asked = std::ranges::any_of(
       moving_, [&](const auto& entry) { return is_asked_as(entry.first, asked); });

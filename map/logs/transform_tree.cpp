@@ -1,5 +1,7 @@
 #include "roadbed/map/logs/transform_tree.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <tuple>
 
@@ -38,6 +40,10 @@ void TransformTree::sort() {
   }
 }
 
+void TransformTree::hold_what_was_said_once() {
+  for (auto& [child, edge] : edges_) edge.is_held = !edge.is_static && edge.poses.size() == 1;
+}
+
 void TransformTree::merge(TransformTree other) {
   edges_.merge(other.edges_);
   for (const auto& [child, edge] : other.edges_) {  // which stay there: this has them
@@ -71,7 +77,7 @@ std::vector<std::string> TransformTree::way_up(const std::string& child, const s
 }
 
 std::optional<Eigen::Isometry3d> TransformTree::Edge::at(std::int64_t stamp_ns) const {
-  if (is_static) return poses.front().pose;
+  if (is_static || is_held) return poses.front().pose;
   const auto next = std::ranges::lower_bound(gaps, stamp_ns, {}, &LogGap::to_ns);
   const bool is_in_gap = next != gaps.end() && next->from_ns < stamp_ns && stamp_ns < next->to_ns;
   return is_in_gap ? std::nullopt : pose_at(poses, stamp_ns);
@@ -90,18 +96,27 @@ std::optional<Eigen::Isometry3d> TransformTree::at(const std::vector<std::string
 
 std::vector<std::string>::const_iterator TransformTree::lowest_moving(
     const std::vector<std::string>& way) const {
+  const auto moves = [&](const std::string& child) {
+    const Edge& edge = edges_.at(child);
+    return !edge.is_static && !edge.is_held;
+  };
+  const auto moving = std::ranges::find_if(way, moves);
+  if (moving != way.end()) return moving;
   return std::ranges::find_if(way, [&](const auto& child) { return !edges_.at(child).is_static; });
 }
 
-std::vector<TimedPose> TransformTree::poses(const std::vector<std::string>& way) const {
-  std::vector<TimedPose> found;
+NotedPoses TransformTree::poses(const std::vector<std::string>& way) const {
+  NotedPoses found;
   const auto moving = lowest_moving(way);
   if (moving == way.end()) return found;
-  for (const TimedPose& at_stamp : edges_.at(*moving).poses) {
+  const std::vector<TimedPose>& all = edges_.at(*moving).poses;
+  for (const TimedPose& at_stamp : all) {
     if (const auto pose = at(way, at_stamp.stamp_ns)) {
-      found.push_back({at_stamp.stamp_ns, *pose, at_stamp.speed_mps});
+      found.poses.push_back({at_stamp.stamp_ns, *pose, at_stamp.speed_mps});
     }
   }
+  found.notes = left_out_notes(all.size() - found.poses.size(), all.size(),
+                               "no transform from " + parent_of(way.back()));
   return found;
 }
 
@@ -119,6 +134,12 @@ std::vector<std::string> TransformTree::children() const {
   std::vector<std::string> names;
   for (const auto& [child, edge] : edges_) names.push_back(child);
   return names;
+}
+
+std::vector<std::string> left_out_notes(std::size_t left_out, std::size_t all,
+                                        const std::string& what_is_missing) {
+  if (left_out == 0) return {};
+  return {fmt::format("{} of {} poses left out: {} at their time", left_out, all, what_is_missing)};
 }
 
 std::optional<Eigen::Isometry3d> pose_at(const std::vector<TimedPose>& poses,

@@ -12,6 +12,16 @@
 
 namespace roadbed::map::inline logs {
 
+/// Poses, and what users may want to know of them.
+struct NotedPoses {
+  std::vector<TimedPose> poses = {};
+  std::vector<std::string> notes = {};
+};
+
+/// "120 of 250 poses left out: no transform from map at their time"; none where none is left out.
+std::vector<std::string> left_out_notes(std::size_t left_out, std::size_t all,
+                                        const std::string& what_is_missing);
+
 /// Frames that stand in each other, over time:
 ///
 ///     map ──▶ odom ──▶ base_link ──▶ lidar      read from the child up
@@ -24,6 +34,9 @@ class TransformTree {
 
   /// Puts the poses of each frame in order of time; of several at one time the first stays.
   void sort();
+
+  /// What was said only once, as topics that latch do, holds for all times from here on.
+  void hold_what_was_said_once();
 
   /// Takes the frames from another one that it does not have.
   void merge(TransformTree other);
@@ -45,8 +58,8 @@ class TransformTree {
                                       std::int64_t stamp_ns) const;
 
   /// The poses of the lowest frame that moves, at its own stamps and with its speeds, where all
-  /// others are known.
-  std::vector<TimedPose> poses(const std::vector<std::string>& way) const;
+  /// others are known; with a note of those left out.
+  NotedPoses poses(const std::vector<std::string>& way) const;
 
   /// Whether a way leads to where points may be put together: a frame on it moves, or it ends in
   /// `map`.
@@ -65,6 +78,7 @@ class TransformTree {
   struct Edge {
     std::string topic, parent, other_parent;  ///< the last: of a frame that is said to have two
     bool is_static = false;
+    bool is_held = false;  ///< not static, but said only once
     std::vector<TimedPose> poses;
     std::vector<LogGap> gaps;
 

@@ -76,4 +76,14 @@ DriveAudit audit_drive(std::shared_ptr<const map::ClearanceField> field,
   return audit;
 }
 
+void leave_unknown(const std::vector<Stretch>& between_poses, DriveAudit& audit) {
+  audit.report = judged_between_poses(std::move(audit.report), between_poses);
+  for (AuditCertificate& certificate : audit.certificates) {
+    auto& unknown = certificate.unknown;
+    unknown.insert(unknown.end(), between_poses.begin(), between_poses.end());
+    unknown = joined(std::move(unknown));
+    certificate.verdict = verdict_of(certificate);
+  }
+}
+
 }  // namespace roadbed::planning::audit

@@ -67,4 +67,9 @@ DriveAudit audit_drive(const VehicleSurroundings& around, GroundUnder ground,
 DriveAudit audit_drive(std::shared_ptr<const map::ClearanceField> field,
                        const geometry::Trajectory& drive_in_source, const AuditQuestion& question);
 
+/// What an audit leaves of a drive that is a straight line, of which nobody says where it was, in
+/// some stretches: these are unknown in its report and in its certificates, however clear the line.
+/// @pre they lie in the drive, in order of time.
+void leave_unknown(const std::vector<Stretch>& between_poses, DriveAudit& audit);
+
 }  // namespace roadbed::planning::audit

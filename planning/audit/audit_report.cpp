@@ -40,6 +40,14 @@ AuditReport judged(AuditReport report, const geometry::Trajectory& drive) {
   return report;
 }
 
+AuditReport judged_between_poses(AuditReport report, const std::vector<Stretch>& between_poses) {
+  report.between_poses = between_poses;
+  report.unknown.insert(report.unknown.end(), between_poses.begin(), between_poses.end());
+  std::ranges::stable_sort(report.unknown, {}, &Stretch::from_s);
+  report.verdict = verdict_of(report);
+  return report;
+}
+
 std::vector<Stretch> joined(std::vector<Stretch> stretches) {
   std::ranges::stable_sort(stretches, {}, &Stretch::from_s);
   std::vector<Stretch> apart;

@@ -90,8 +90,9 @@ struct AuditReport {
   std::vector<Conflict> conflicts;  ///< in order of time
   std::vector<Stretch> unknown;     ///< space within the clearance was not measured, or the like:
   std::vector<UnobservedStretch> unobserved;  ///< nothing was measured near, so unknown as well
-  std::vector<ObservedTime> observed;         ///< of one part: what says that the rest is not so
-  std::vector<Stretch> undecided;  ///< nearer to the limit than the proof can tell (1 mm)
+  std::vector<Stretch> between_poses;  ///< nobody says where the vehicle was, so unknown as well
+  std::vector<ObservedTime> observed;  ///< of one part: what says that the rest is not so
+  std::vector<Stretch> undecided;      ///< nearer to the limit than the proof can tell (1 mm)
 
   struct Sample {
     double t_s, clearance_m;
@@ -103,6 +104,10 @@ struct AuditReport {
 
 /// The report of a drive, judged: all of it is unknown where too little was measured.
 AuditReport judged(AuditReport report, const geometry::Trajectory& drive);
+
+/// The report of a drive of which nobody says where it was in these stretches.
+/// @pre they lie in the drive, in order of time.
+AuditReport judged_between_poses(AuditReport report, const std::vector<Stretch>& between_poses);
 
 /// Stretches in order of time; those that meet become one.
 std::vector<Stretch> joined(std::vector<Stretch> stretches);

@@ -51,7 +51,7 @@ class ManyAudits {
   }
 
   void read(const AuditSubject& subject, AuditedDrive& audited) const {
-    audited.drive = subject.drive();
+    audited.take(subject.read());
     if (demand_.occupancy == nullptr) return;
     audited.audit.ground = demand_.question.ground_of(*demand_.occupancy, audited.drive);
   }
@@ -120,7 +120,7 @@ class ManyAudits {
   void finish(std::size_t i, const AuditInOccupancy& audit_in_occupancy) {
     attempt(i, [&] {
       audit_in_occupancy();
-      audit_on_road(demand_, audited_[i]);
+      finish_audit(demand_, audited_[i]);
     });
     done_one_();
   }

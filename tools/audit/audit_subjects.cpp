@@ -56,8 +56,8 @@ std::vector<ObstacleInSource> of_scenario(const std::filesystem::path& file, con
 
 }  // namespace
 
-geometry::Trajectory AuditSubject::drive() const {
-  return file.empty() ? swept : read_drive(file, options);
+DriveOfFile AuditSubject::read() const {
+  return file.empty() ? DriveOfFile{.drive = swept} : read_drive(file, options);
 }
 
 std::vector<Argument> AuditSubjects::declare(Arguments& arguments) {

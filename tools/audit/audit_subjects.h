@@ -13,6 +13,7 @@
 #include "roadbed/tools/cli/drive_arguments.h"
 #include "roadbed/tools/cli/inputs.h"
 #include "roadbed/tools/cli/route_question.h"
+#include "roadbed/tools/files/drive_file.h"
 
 namespace roadbed::tools::inline audit {
 
@@ -24,7 +25,7 @@ struct AuditSubject {
   DriveOptions options = {};  ///< of the file
 
   /// @throws InputError if the file is unusable.
-  geometry::Trajectory drive() const;
+  DriveOfFile read() const;
 };
 
 /// The options that say what is audited: `--trajectory` (a file or a folder), `--log`, or a route

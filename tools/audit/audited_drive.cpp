@@ -70,13 +70,25 @@ std::string ground_note(const planning::GroundUnder& ground,
                     cell_m, underside_m);
 }
 
+void AuditedDrive::take(DriveOfFile read) {
+  drive = std::move(read.drive);
+  notes = std::move(read.notes);
+  for (const DriveGap& gap : read.gaps) {
+    between_poses.push_back(
+        {std::max(gap.from_s, drive.start_s()), std::min(gap.to_s, drive.end_s())});
+  }
+}
+
 std::string_view AuditedDrive::outcome() const {
   using planning::Verdict;
   if (!fault.empty()) return "unusable";
   const Verdict of_occupancy = has_occupancy ? audit.report.verdict : Verdict::clear;
   const Verdict of_road = road ? road->verdict() : Verdict::clear;
+  const Verdict of_poses = between_poses.empty() ? Verdict::clear : Verdict::unknown;
   for (const Verdict grave : {Verdict::conflict, Verdict::unknown, Verdict::undecided}) {
-    if (of_occupancy == grave || of_road == grave) return planning::to_string(grave);
+    if (of_occupancy == grave || of_road == grave || of_poses == grave) {
+      return planning::to_string(grave);
+    }
   }
   return planning::to_string(Verdict::clear);
 }
@@ -102,7 +114,10 @@ planning::AuditReport AuditedDrive::whole() const {
   return whole;
 }
 
-void audit_on_road(const AuditDemand& demand, AuditedDrive& audited) {
+void finish_audit(const AuditDemand& demand, AuditedDrive& audited) {
+  if (!audited.between_poses.empty()) {
+    planning::leave_unknown(audited.between_poses, audited.audit);
+  }
   if (demand.road != nullptr) {
     audited.road = audit_road(audited.drive, demand.question.inflated_parts(), *demand.road,
                               demand.question.certifies);
@@ -116,7 +131,7 @@ void audit_one(const AuditDemand& demand, AuditedDrive& audited,
     audited.audit =
         planning::audit_drive(*demand.occupancy, audited.drive, demand.question, on_ground);
   }
-  audit_on_road(demand, audited);
+  finish_audit(demand, audited);
 }
 
 }  // namespace roadbed::tools::audit

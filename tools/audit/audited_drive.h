@@ -10,6 +10,7 @@
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
 #include "roadbed/planning/audit/audit_drive.h"
 #include "roadbed/tools/audit/road_audit.h"
+#include "roadbed/tools/files/drive_file.h"
 
 namespace roadbed::tools::inline audit {
 
@@ -38,10 +39,16 @@ struct AuditedDrive {
   std::string name;
   std::string fault = {};  ///< why it could not be audited; empty: it was
   geometry::Trajectory drive = {};
-  std::string vehicle_of_drive = {};  ///< that its file names, if that was audited: "commonroad:3"
-  bool has_occupancy = true;          ///< whether it was audited against one
-  planning::DriveAudit audit = {};    ///< against the occupancy
+  /// That its file names, if that was audited: "commonroad:3".
+  std::string vehicle_of_drive = {};
+  std::vector<std::string> notes = {};                ///< of its file, for users
+  std::vector<planning::Stretch> between_poses = {};  ///< its log says no pose for long: unknown
+  bool has_occupancy = true;                          ///< whether it was audited against one
+  planning::DriveAudit audit = {};                    ///< against the occupancy
   std::optional<RoadAudit> road = {};
+
+  /// What a file holds of it.
+  void take(DriveOfFile read);
 
   bool is_clear() const { return outcome() == "clear"; }
   /// "clear", "conflict", …, the gravest of all that was asked, or "unusable".
@@ -58,7 +65,8 @@ struct AuditedDrive {
 void audit_one(const AuditDemand& demand, AuditedDrive& audited,
                const std::function<void(const planning::GroundUnder&)>& on_ground = {});
 
-/// What a demand says of the road, if it does. Throws as `audit_road`.
-void audit_on_road(const AuditDemand& demand, AuditedDrive& audited);
+/// What is left to do once a drive was audited against the occupancy: stretches between poses are
+/// unknown, and what a demand says of the road, if it does. Throws as `audit_road`.
+void finish_audit(const AuditDemand& demand, AuditedDrive& audited);
 
 }  // namespace roadbed::tools::audit

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/logs/feather.h"
 #include "roadbed/map/logs/log.h"
+#include "roadbed/map/logs/log_contents.h"
 #include "roadbed/map/logs/log_drive.h"
 #include "roadbed/tools/files/drive_formats.h"
 #include "roadbed/tools/files/trajectory_csv.h"
@@ -159,6 +161,64 @@ geometry::Trajectory drive_of(const DrivePoses& read, const std::string& name,
   return DriveOfPoses(read, name).drive(*pose_in_vehicle);
 }
 
+/// Between poses that were measured.
+std::vector<DriveGap> gaps_between(const std::vector<map::TimedPose>& poses) {
+  constexpr std::int64_t least_ns = 500'000'000, most_medians = 5;
+  std::vector<std::int64_t> times_ns;
+  for (const map::TimedPose& pose : poses) times_ns.push_back(pose.stamp_ns);
+  std::int64_t median_ns = 0;
+  std::vector<DriveGap> gaps;
+  for (const map::LogGap& gap : map::gaps_in(times_ns, median_ns)) {
+    const std::int64_t long_ns = gap.to_ns - gap.from_ns;
+    if (long_ns <= least_ns || long_ns / most_medians <= median_ns) continue;
+    const auto since_start_s = [&](std::int64_t at_ns) {
+      return 1e-9 * static_cast<double>(at_ns - times_ns.front());
+    };
+    gaps.push_back({since_start_s(gap.from_ns), since_start_s(gap.to_ns)});
+  }
+  return gaps;
+}
+
+std::string gaps_note(const std::vector<DriveGap>& gaps) {
+  const auto length_s = [](const DriveGap& gap) { return gap.to_s - gap.from_s; };
+  const DriveGap& longest = *std::ranges::max_element(gaps, {}, length_s);
+  return fmt::format(
+      "{} gap{} between poses, {} {:.3f} s after {:.3f} s: the drive is a straight line there, "
+      "which nobody measured",
+      gaps.size(), gaps.size() == 1 ? "" : "s", gaps.size() == 1 ? "of" : "the longest of",
+      length_s(longest), longest.from_s);
+}
+
+/// Steps that no car makes, at noise of 0.1 m.
+std::string jumps_note(const std::vector<TrajectoryPoint>& rows) {
+  constexpr double fastest_mps = 60.0, noise_m = 0.1;
+  std::string first;
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const double took_s = rows[i].t_s - rows[i - 1].t_s;
+    const double way_m = std::hypot(rows[i].x_m - rows[i - 1].x_m, rows[i].y_m - rows[i - 1].y_m);
+    if (way_m <= fastest_mps * took_s + noise_m) continue;
+    if (++count == 1)
+      first = fmt::format("{:.3f} m in {:.3g} s at {:.3f} s", way_m, took_s, rows[i].t_s);
+  }
+  if (count == 0) return {};
+  return fmt::format("{} step{} of over {} m/s between poses, {}: no car drives that", count,
+                     count == 1 ? "" : "s", fastest_mps, count == 1 ? first : "the first " + first);
+}
+
+/// What a log's poses make.
+DriveOfFile drive_of_measured(const map::LogDrive& log, const std::string& name,
+                              const DriveOptions& options) {
+  DriveOfFile read{.drive = drive_of(of_log(log, options), name, options),
+                   .notes = log.notes,
+                   .is_planned = log.is_planned};
+  if (!log.is_planned) read.gaps = gaps_between(log.poses);
+  if (!read.gaps.empty()) read.notes.push_back(gaps_note(read.gaps));
+  const std::string jumps = jumps_note(read.drive.points());
+  if (!jumps.empty()) read.notes.push_back(jumps);
+  return read;
+}
+
 }  // namespace
 
 bool is_of_camera(const DriveOptions& options) {
@@ -189,16 +249,21 @@ double needed_step_s(const DriveOptions& options, const std::string& name,
                          .remedy = "give it"});
 }
 
-geometry::Trajectory read_drive(const fs::path& file, const DriveOptions& options) {
+std::string notes_text(const std::string& name, const std::vector<std::string>& notes) {
+  std::string text;
+  for (const std::string& note : notes) text += fmt::format("note: {}: {}\n", name, note);
+  return text;
+}
+
+DriveOfFile read_drive(const fs::path& file, const DriveOptions& options) {
   const std::string name = map::input_name(file);
   if (map::is_log(file)) {
-    const auto frame =
-        options.pose_frame ? map::DriveFrame::recorded : map::DriveFrame::vehicle;
+    const auto frame = options.pose_frame ? map::DriveFrame::recorded : map::DriveFrame::vehicle;
     const map::LogDrive log = map::drive_of_log(file, options.topic, "--topic", frame);
-    return log.rows.empty() ? drive_of(of_log(log, options), name, options)
-                            : drive_of_rows(log.rows, name);
+    if (log.rows.empty()) return drive_of_measured(log, name, options);
+    return {.drive = drive_of_rows(log.rows, name)};
   }
-  return parse_drive(map::read_file(file, map::most_unpacked_of_rows), name, options);
+  return {.drive = parse_drive(map::read_file(file, map::most_unpacked_of_rows), name, options)};
 }
 
 geometry::Trajectory parse_drive(std::string_view bytes, const std::string& name,

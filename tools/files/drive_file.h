@@ -3,11 +3,28 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/tools/files/drive_options.h"
 
 namespace roadbed::tools::inline files {
+
+/// A time of a drive.
+struct DriveGap {
+  double from_s, to_s;
+};
+
+/// A drive as a file holds it.
+struct DriveOfFile {
+  geometry::Trajectory drive;
+  std::vector<std::string> notes = {};  ///< for users: poses left out, gaps, jumps
+  std::vector<DriveGap> gaps = {};      ///< in which its log has no pose, in order of time
+  bool is_planned = false;              ///< its times are not those of measurements
+};
+
+/// Lines for users, "note: NAME: …".
+std::string notes_text(const std::string& name, const std::vector<std::string>& notes);
 
 /// Reads a drive, its format told by content:
 ///
@@ -23,10 +40,11 @@ namespace roadbed::tools::inline files {
 ///
 /// z points up in all of them, but ahead where `--pose-frame camera` says that they are a camera's:
 /// a pose (x, y, z) of one is then at (z, -x), headed as its z axis is. One of which more than 0.9
-/// of the way, over 5 m, is along z, is refused where that was not said. Speeds follow from the
-/// poses where the file has none.
+/// of the way, over 5 m, is along z, is refused where that was not said. Between poses of a log
+/// that are more than 5 median intervals and 0.5 s apart nobody knows where the vehicle was: a gap.
+/// Notes say that, and steps of over 60 m/s. Speeds follow from the poses where the file has none.
 /// @throws InputError with file and place; also where rows cannot be a drive (`implausible_row`).
-geometry::Trajectory read_drive(const std::filesystem::path& file, const DriveOptions& options);
+DriveOfFile read_drive(const std::filesystem::path& file, const DriveOptions& options);
 
 /// The same of the bytes of one file; `name` stands for it in messages.
 geometry::Trajectory parse_drive(std::string_view bytes, const std::string& name,

@@ -118,8 +118,8 @@ Audit audit(const Occupancy& occupancy, const AuditArguments& given) {
                    .options = given.options,
                    .moving_in_source = made.obstacles.in_source};
   made.audited.name = made.trajectory.file.filename().string();
-  made.audited.drive = made.trajectory.drive;
-  made.audited.audit = planning::audit_drive(*made.occupancy, made.audited.drive, made.question);
+  made.audited.take({.drive = made.trajectory.drive, .gaps = made.trajectory.gaps});
+  audit_one({.occupancy = made.occupancy.get(), .question = made.question}, made.audited);
   return made;
 }
 
@@ -143,8 +143,10 @@ void save_certificate(Audit& audit, nb::handle path, nb::handle trajectory) {
   const nb::gil_scoped_release released;
   planning::AuditQuestion question = audit.question;
   question.certifies = true;
-  const planning::DriveAudit certified =
+  planning::DriveAudit certified =
       planning::audit_drive(*audit.occupancy, audit.audited.drive, question);
+  const auto& between_poses = audit.audited.between_poses;
+  if (!between_poses.empty()) planning::leave_unknown(between_poses, certified);
   CertificateFile file{.program = name_and_version(),
                        .occupancy = certified_file(audit.occupancy_file),
                        .trajectory = certified_file(audit.trajectory.file),

@@ -69,8 +69,9 @@ DriveOptions drive_options(const std::string& topic, const std::string& frame, n
 /// Certificates are about tables only, which need no options.
 Trajectory drive_of_file(const std::filesystem::path& file, const DriveOptions& options) {
   const nb::gil_scoped_release released;
-  return {read_drive(file, options), is_drive_table(file) ? file : std::filesystem::path(),
-          is_solution(file) ? vehicle_of_solution(file) : std::string()};
+  DriveOfFile read = read_drive(file, options);
+  return {std::move(read.drive), is_drive_table(file) ? file : std::filesystem::path(),
+          is_solution(file) ? vehicle_of_solution(file) : std::string(), std::move(read.gaps)};
 }
 
 void bind_trajectory(nb::module_& module) {

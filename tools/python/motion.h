@@ -9,6 +9,7 @@
 
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/tools/files/drive_file.h"
 #include "roadbed/tools/files/vehicle_file.h"
 #include "roadbed/tools/python/bindings.h"
 
@@ -20,6 +21,7 @@ struct Trajectory {
   std::filesystem::path file = {};
   /// That a CommonRoad solution names, whose times count from time step 0; empty: it is of none.
   std::string vehicle_of_solution = {};
+  std::vector<DriveGap> gaps = {};  ///< in which its log has no pose
 };
 
 /// A vehicle, and the file that holds it.

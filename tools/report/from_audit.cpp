@@ -75,7 +75,15 @@ std::vector<DriveEvent> events_of_audit(const AuditReport& report, bool is_of_su
         {stretch.from_s, EventLevel::fault,
          fmt::format("nothing was measured near the {}: {}", stretch.part, stretch.reason)});
   }
+  for (const planning::Stretch& stretch : report.between_poses) {
+    events.push_back({stretch.from_s, EventLevel::fault,
+                      fmt::format("the log says no pose until {:.3f} s", stretch.to_s)});
+  }
   for (const planning::Stretch& stretch : report.unknown) {
+    const auto is_it = [&](const planning::Stretch& between) {
+      return between.from_s <= stretch.from_s && stretch.to_s <= between.to_s;
+    };
+    if (std::ranges::any_of(report.between_poses, is_it)) continue;
     events.push_back({stretch.from_s, EventLevel::warning, "near space that was not measured"});
   }
   return events;

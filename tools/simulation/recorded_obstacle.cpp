@@ -43,7 +43,7 @@ RecordedObstacle recorded_obstacle_in(const JsonNode& node, const std::filesyste
 }
 
 geometry::Trajectory motion_of(const RecordedObstacle& recorded) {
-  std::vector<TrajectoryPoint> rows = read_drive(recorded.file, recorded.options).points();
+  std::vector<TrajectoryPoint> rows = read_drive(recorded.file, recorded.options).drive.points();
   for (TrajectoryPoint& row : rows) {
     const Pose2 centre = row.pose() * recorded.centre_in_vehicle;
     row.t_s += recorded.offset_s;

@@ -203,6 +203,8 @@ TEST(LogDrive, ChainsTransformsBetweenStamps) {
   messages.push_back({0, transform_message(kStart_ns + 500'000'000, "map", "odom", 200.0, 0.0)});
   const LogDrive drive = drive_in(bag_bytes("/tf", kTransforms, messages));
   ASSERT_EQ(drive.poses.size(), 6u) << "odom is known in the map for half a second";
+  EXPECT_EQ(drive.notes, std::vector<std::string>{
+                             "5 of 11 poses left out: no transform from map at their time"});
   for (int i = 0; i < 6; ++i) {
     EXPECT_NEAR(drive.poses[static_cast<std::size_t>(i)].pose.translation().x(),
                 100.0 + 20.0 * i + 1.0 * i, 1e-9);
@@ -401,6 +403,49 @@ TEST(LogDrive, IsOfTheOnlyBodyInANamespaceOrOnTheGround) {
   EXPECT_NE(fault_of(two, "/tf").find("a/base_link, b/base_link"), std::string::npos);
 }
 
+TEST(LogDrive, HoldsATransformThatWasSaidOnce) {
+  std::vector<Recorded> by_transforms, by_poses = odometry_in("odom");
+  for (int i = 0; i < 250; ++i) {
+    by_transforms.push_back(
+        {"/tf", kTransforms,
+         transform_message(kStart_ns + 20'000'000 * i, "odom", "base_link", 1.0 * i, 0.0)});
+  }
+  for (auto* log : {&by_transforms, &by_poses}) {
+    const std::size_t rows = log->size();
+    log->push_back(
+        {"/tf", kTransforms, transform_message(kStart_ns + 40'000'000, "map", "odom", 300.0, 0.0)});
+    const LogDrive drive = drive_in(*log);
+    ASSERT_EQ(drive.poses.size(), rows);
+    EXPECT_TRUE(drive.notes.empty());
+    EXPECT_NEAR(drive.poses.front().pose.translation().x(), 300.0, 1e-12);
+    EXPECT_NEAR(drive.poses.back().pose.translation().x(), 300.0 + 1.0 * (rows - 1.0), 1e-12);
+  }
+}
+
+TEST(LogDrive, OfOnePoseThatWasSaidOnceIsOneRow) {
+  std::vector<Recorded> log{
+      {"/tf", kTransforms, transform_message(kStart_ns, "map", "base_link", 3.0, 0.0)}};
+  EXPECT_EQ(drive_in(log).poses.size(), 1u);
+}
+
+TEST(LogDrive, SaysWhyAllOfItsPosesAreLeftOut) {
+  std::vector<Recorded> log = odometry_in("odom");
+  for (int i = 0; i < 2; ++i) {
+    log.push_back({"/tf", kTransforms, transform_message(5 + i, "map", "odom", 1.0, 0.0)});
+  }
+  EXPECT_NE(fault_of(log).find("/odom: 10 of 10 poses left out: no transform from map"),
+            std::string::npos)
+      << fault_of(log);
+}
+
+TEST(LogDrive, SaysThatNothingSaysWhereItsFrameIsOnTheVehicle) {
+  const LogDrive drive = drive_in({odometry_of_imu()});
+  ASSERT_EQ(drive.notes.size(), 1u);
+  EXPECT_EQ(drive.notes[0].find("/odom is of imu_link, taken for the rear axle"), 0u)
+      << drive.notes[0];
+  EXPECT_TRUE(drive_in(odometry_in("map")).notes.empty());
+}
+
 std::string planned_message(int points, bool has_times, double step_m = 2.0,
                             float speed_mps = 4.0F) {
   CdrWriter cdr;
@@ -423,6 +468,16 @@ TEST(LogDrive, TakesThePlannedTrajectoryThatIsNumbered) {
   const LogDrive without_times = drive_in(bytes, "/planning/trajectory#2");
   ASSERT_EQ(without_times.poses.size(), 7u);
   EXPECT_EQ(without_times.poses.back().stamp_ns, 3'000'000'000) << "12 m at 4 m/s";
+}
+
+TEST(LogDrive, SaysWhichPointsOfAPlanHaveNoTimes) {
+  const std::string stands = planned_message(5, false, 2.0, 0.0F);
+  const LogDrive drive =
+      drive_in(bag_bytes("/plan", "autoware_planning_msgs/msg/Trajectory", {{1, stands}}));
+  EXPECT_TRUE(drive.is_planned);
+  EXPECT_EQ(drive.poses.size(), 1u);
+  ASSERT_EQ(drive.notes.size(), 1u);
+  EXPECT_EQ(drive.notes[0].find("4 of 5 points left out: their speeds are 0"), 0u);
 }
 
 TEST(LogDrive, SaysHowManyTrajectoriesThereAre) {

@@ -58,5 +58,18 @@ TEST(JudgedStretches, OneRowHasTheVerdictOfTheReport) {
   EXPECT_EQ(judged[0].verdict, Verdict::conflict);
 }
 
+TEST(JudgedStretches, BetweenPosesAreUnknownHoweverClearTheRestIs) {
+  AuditReport clear;
+  clear.verdict = Verdict::clear;
+  const AuditReport report = judged_between_poses(clear, {{2.0, 3.0}});
+  EXPECT_EQ(report.verdict, Verdict::unknown);
+  const auto judged = judged_stretches(report, 0.0, 5.0);
+  ASSERT_EQ(judged.size(), 3u);
+  EXPECT_EQ(judged[1].from_s, 2.0);
+  EXPECT_EQ(judged[1].to_s, 3.0);
+  EXPECT_EQ(judged[1].verdict, Verdict::unknown);
+  EXPECT_EQ(judged[2].verdict, Verdict::clear);
+}
+
 }  // namespace
 }  // namespace roadbed::planning

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/tests/support/log_bytes.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/tools/audit/audit_command_fixture.h"
 
@@ -255,6 +256,38 @@ TEST_F(AuditCommand, ChecksNoProofAgainstAVehicleThatItIsNotAbout) {
               HasSubstr("left mirror: heights 2.9 m to 3.2 m are not those of the vehicle"));
   EXPECT_THAT(faults_if([](Json& claims) { claims.erase("vehicle_file"); }),
               HasSubstr("it is about 3 parts, and the vehicle has 1"));
+}
+
+/// Past the post at 10 m/s, 4 m beside it, a pose every 0.1 s; without those in the middle 0.7 s.
+std::string log_with_gap(bool has_gap) {
+  std::vector<McapMessage> messages;
+  for (int i = 0; i <= 20; ++i) {
+    if (has_gap && i > 5 && i < 13) continue;
+    const std::int64_t t_ns = 1'700'000'000'000'000'000 + std::int64_t{100'000'000} * i;
+    messages.push_back({t_ns, odometry_message(t_ns, 1.0 * i, -3.0, 0.0, 10.0)});
+  }
+  return mcap_bytes("/odom", "nav_msgs/msg/Odometry", messages, "");
+}
+
+TEST_F(AuditCommand, ProvesNothingWhereTheLogSaysNoPose) {
+  const std::string proof = folder_ / "proof.json";
+  EXPECT_EQ(audit({"--trajectory", folder_.write("whole.mcap", log_with_gap(false))}).status, 0);
+  const std::string gapped = folder_.write("gapped.mcap", log_with_gap(true));
+  const ProgramRun run = audit({"--trajectory", gapped, "--certificate", proof, "--json"});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(run.err, HasSubstr("gapped.mcap: 1 gap between poses, of 0.800 s after 0.500 s"));
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_EQ(json["verdict"], "unknown");
+  ASSERT_EQ(json["between_poses"].size(), 1u);
+  ASSERT_EQ(json["stretches"].size(), 3u);
+  EXPECT_EQ(json["stretches"][1]["verdict"], "unknown");
+  EXPECT_NEAR(json["stretches"][1]["from_s"].get<double>(), 0.5, 1e-9);
+  EXPECT_NEAR(json["stretches"][1]["to_s"].get<double>(), 1.3, 1e-9);
+  EXPECT_EQ(run_roadbed({"audit", "--check", proof}).status, 0);
+  EXPECT_EQ(nlohmann::json::parse(bytes_of(proof))["parts"][0]["verdict"], "unknown");
+  const ProgramRun text = audit({"--trajectory", gapped, "--quiet"});
+  EXPECT_THAT(text.out, HasSubstr("0.500 s to 1.300 s: the log says no pose of the vehicle"));
+  EXPECT_EQ(text.err, "");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tests/support/log_bytes.h"
+#include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 
@@ -222,6 +223,58 @@ TEST(PoseFrame, TakesACameraOverTheRearAxleOrElsewhere) {
   EXPECT_FALSE(pose_frame("1.08,-0.5", {})->is_camera);
 }
 
+/// Straight on at 10 m/s from 0 to 10 s, at these times in tenths of a second; `jump_m` farther
+/// from the seventh second on.
+DriveOfFile drive_of_log_at(const std::vector<int>& tenths, double jump_m = 0.0) {
+  std::vector<tests::McapMessage> messages;
+  for (const int i : tenths) {
+    const std::int64_t t_ns = 1'700'000'000'000'000'000 + std::int64_t{100'000'000} * i;
+    messages.push_back(
+        {t_ns, tests::odometry_message(t_ns, i + (i >= 70 ? jump_m : 0.0), 0.0, 0.0, 10.0)});
+  }
+  const tests::TemporaryFolder folder;
+  return read_drive(
+      folder.write("a.mcap", tests::mcap_bytes("/odom", "nav_msgs/msg/Odometry", messages, "")),
+      {});
+}
+
+/// From 0 to 10 s at 10 Hz, without those between two.
+std::vector<int> tenths_without(int after, int before) {
+  std::vector<int> tenths;
+  for (int i = 0; i <= 100; ++i) {
+    if (i <= after || i >= before) tenths.push_back(i);
+  }
+  return tenths;
+}
+
+TEST(DriveFile, SaysWhereALogHasNoPose) {
+  const DriveOfFile gapped = drive_of_log_at(tenths_without(20, 50));
+  ASSERT_EQ(gapped.gaps.size(), 1u);
+  EXPECT_NEAR(gapped.gaps[0].from_s, 2.0, 1e-9);
+  EXPECT_NEAR(gapped.gaps[0].to_s, 5.0, 1e-9);
+  ASSERT_EQ(gapped.notes.size(), 1u);
+  EXPECT_EQ(gapped.notes[0].find("1 gap between poses, of 3.000 s after 2.000 s"), 0u)
+      << gapped.notes[0];
+}
+
+TEST(DriveFile, TakesNoTimeForAGapThatIsShortInItselfOrAmongTheOthers) {
+  const DriveOfFile short_ones = drive_of_log_at(tenths_without(20, 25));  // 0.5 s
+  EXPECT_TRUE(short_ones.gaps.empty());
+  EXPECT_EQ(drive_of_log_at(tenths_without(20, 26)).gaps.size(), 1u);
+  const DriveOfFile seldom = drive_of_log_at({0, 10, 20, 30, 80});  // five medians of a second
+  EXPECT_TRUE(seldom.gaps.empty() && seldom.notes.empty());
+}
+
+TEST(DriveFile, SaysWhichStepsNoCarMakes) {
+  EXPECT_TRUE(drive_of_log_at(tenths_without(0, 1), 5.0).notes.empty()) << "6 m in 0.1 s";
+  const DriveOfFile jumps = drive_of_log_at(tenths_without(0, 1), 6.0);
+  ASSERT_EQ(jumps.notes.size(), 1u);
+  EXPECT_EQ(jumps.notes[0].find("1 step of over 60 m/s between poses, 7.000 m in 0.1 s at 7.000 s"),
+            0u)
+      << jumps.notes[0];
+  EXPECT_EQ(notes_text("a.mcap", {"one", "two"}), "note: a.mcap: one\nnote: a.mcap: two\n");
+}
+
 TEST(PoseFrame, TakesWordsAndPlaces) {
   EXPECT_EQ(pose_frame("rear-axle", {})->pose_in_vehicle.x_m, 0.0);
   EXPECT_NEAR(pose_frame("centre", {})->pose_in_vehicle.x_m, 0.5 * 4.508 - 0.8312829, 1e-12);
@@ -235,7 +288,7 @@ TEST(PoseFrame, TakesWordsAndPlaces) {
 TEST(DriveFile, OfArgoverseIsWhatTheLogSays) {
   ROADBED_REAL_DATA_OR_SKIP(real);
   const auto file = real / "argoverse2/argoverse+av2-api/7fab2350/city_SE3_egovehicle.feather";
-  const auto drive = read_drive(file, {});
+  const auto drive = read_drive(file, {}).drive;
   // What pyarrow reads.
   EXPECT_EQ(drive.points().size(), 2706u);
   EXPECT_EQ(drive.points().front().x_m, 5172.668216028519);

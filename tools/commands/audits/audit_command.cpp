@@ -167,7 +167,7 @@ class AuditCommand : public Command {
     const std::vector<AuditedDrive> audits =
         audit_all(scene.demand(), subjects, common.threads, [&] { progress.done_one(); });
     for (const AuditedDrive& audited : audits) {
-      if (!common.quiet && audited.fault.empty()) note_curvature(audited, scene, streams.err);
+      if (!common.quiet && audited.fault.empty()) print_notes(audited, scene, streams.err);
     }
     outputs_.write_all(audits, scene);
     if (json_) {
@@ -178,20 +178,21 @@ class AuditCommand : public Command {
     return std::ranges::all_of(audits, &AuditedDrive::is_clear) ? Exit::ok : Exit::no;
   }
 
-  // Of what the vehicle could not drive; audited all the same.
-  static void note_curvature(const AuditedDrive& audited, const AuditScene& scene,
-                             std::ostream& err) {
+  // Of its file, and of what the vehicle could not drive; audited all the same.
+  static void print_notes(const AuditedDrive& audited, const AuditScene& scene, std::ostream& err) {
+    err << notes_text(audited.name, audited.notes);
     const std::string note = curvature_note(audited.drive, scene.shape);
     if (!note.empty()) fmt::print(err, "note: {}: {}\n", audited.name, note);
   }
 
   Exit run_one(const AuditSubject& subject, const AuditScene& scene, const Streams& streams,
                const CommonOptions& common) const {
-    AuditedDrive audited{.name = subject.name,
-                         .drive = subject.drive(),
-                         .vehicle_of_drive = asked_.vehicle_of_drive()};
-    if (!common.quiet) streams.err << scene.vehicle_note;
-    if (!common.quiet) note_curvature(audited, scene, streams.err);
+    AuditedDrive audited{.name = subject.name, .vehicle_of_drive = asked_.vehicle_of_drive()};
+    audited.take(subject.read());
+    if (!common.quiet) {
+      streams.err << scene.vehicle_note;
+      print_notes(audited, scene, streams.err);
+    }
     audit_one(scene.demand(), audited, [&](const planning::GroundUnder& ground) {
       if (common.quiet) return;
       streams.err << ground_note(ground, scene.question, scene.occupancy->resolution_m());

@@ -162,6 +162,7 @@ Json audit_json(const AuditedDrive& audited) {
   json["verdict"] = std::string(audited.outcome());
   if (!audited.vehicle_of_drive.empty()) json["vehicle"] = audited.vehicle_of_drive;
   if (audited.has_occupancy) add_clearance(audited, json);
+  json["between_poses"] = times_json(audited.between_poses);
   json["stretches"] =
       judged_json(judged_stretches(audited.whole(), drive.start_s(), drive.end_s()));
   if (audited.road) {

@@ -60,6 +60,7 @@ std::vector<planning::Stretch> unknown_besides(const planning::AuditReport& repo
   for (const planning::UnobservedStretch& stretch : report.unobserved) {
     reasoned.push_back({stretch.from_s, stretch.to_s});
   }
+  reasoned.insert(reasoned.end(), report.between_poses.begin(), report.between_poses.end());
   reasoned = planning::joined(std::move(reasoned));
   std::vector<planning::Stretch> besides = report.unknown;
   std::erase_if(besides, [&](const planning::Stretch& stretch) {
@@ -133,6 +134,10 @@ std::string audit_text(const AuditedDrive& audited) {
         fmt::format("{:<17}{}, which the solution names\n", "vehicle", audited.vehicle_of_drive);
   }
   if (audited.has_occupancy) text += clearance_text(audited.audit.report);
+  for (const planning::Stretch& stretch : audited.between_poses) {
+    text += fmt::format("{:<17}{:.3f} s to {:.3f} s: the log says no pose of the vehicle there\n",
+                        "unknown", stretch.from_s, stretch.to_s);
+  }
   if (audited.road) {
     text += surface_text(*audited.road);
     for (const planning::RuleReport& rule : audited.road->rules) {

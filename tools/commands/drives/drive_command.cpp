@@ -10,6 +10,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/logs/log.h"
 #include "roadbed/map/logs/log_contents.h"
 #include "roadbed/tools/cli/drive_arguments.h"
@@ -77,7 +78,8 @@ Json gaps_json(const std::vector<TrajectoryPoint>& rows) {
   return gaps;
 }
 
-Json drive_json(const geometry::Trajectory& drive) {
+Json drive_json(const DriveOfFile& read) {
+  const geometry::Trajectory& drive = read.drive;
   const std::vector<TrajectoryPoint>& rows = drive.points();
   double length_m = 0.0;
   for (std::size_t i = 1; i < rows.size(); ++i) length_m += step_m(rows[i - 1], rows[i]);
@@ -97,7 +99,8 @@ Json drive_json(const geometry::Trajectory& drive) {
             {"max_x_m", east->x_m},
             {"max_y_m", north->y_m}}},
           {"gaps", gaps_json(rows)},
-          {"jumps", jumps_json(rows)}};
+          {"jumps", jumps_json(rows)},
+          {"notes", read.notes}};
 }
 
 void print_topic(std::ostream& out, const Json& topic) {
@@ -153,8 +156,11 @@ class DriveCommand : public Command {
     arguments.example("  roadbed drive info drive/trajectory.csv");
   }
 
-  Exit run(const Streams& streams, const CommonOptions& /*common*/) override {
+  Exit run(const Streams& streams, const CommonOptions& common) override {
     const Json info = contents();
+    if (!common.quiet && !info["drive"].is_null()) {
+      streams.err << notes_text(map::one_line(input_.string()), info["drive"]["notes"]);
+    }
     if (json_) {
       streams.out << map::json_text(versioned("drive_info", info), 2) << '\n';
       return Exit::ok;

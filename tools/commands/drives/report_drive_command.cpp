@@ -54,9 +54,9 @@ class ReportDriveCommand : public Command {
     scene.drive_file = drive_;
     scene.command = "roadbed report drive " + drive_.string();
     AuditedDrive audited{.name = map::one_line(drive_.string()),
-                         .drive = read_drive(drive_, of_drive_.options(scene.shape)),
                          .vehicle_of_drive = asked_.vehicle_of_drive()};
-    if (!common.quiet) streams.err << scene.vehicle_note;
+    audited.take(read_drive(drive_, of_drive_.options(scene.shape)));
+    if (!common.quiet) streams.err << scene.vehicle_note << notes_text(audited.name, audited.notes);
     add_occupancy(scene, streams, common);
     audit_one(scene.demand(), audited);
     write(audited, scene);

@@ -81,7 +81,7 @@ map::PageOverlay reach_of(const map::RoadMap& road_map, const std::filesystem::p
 
 map::PageOverlay drive_of(const map::RoadMap& road_map, const std::filesystem::path& file,
                           const DriveOptions& options) {
-  const geometry::Trajectory drive = read_drive(file, options);
+  const geometry::Trajectory drive = read_drive(file, options).drive;
   map::PageOverlay overlay = overlay_of("drive", "Drive " + file.stem().string());
   overlay.lines_in_map.emplace_back();
   for (const geometry::TrajectoryPoint& point : drive.points()) {
