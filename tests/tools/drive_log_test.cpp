@@ -8,6 +8,7 @@
 #include <string>
 
 #include "roadbed/tests/support/log_bytes.h"
+#include "roadbed/tests/support/made_log.h"
 #include "roadbed/tests/support/packed.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
@@ -193,6 +194,72 @@ TEST_F(DriveLog, InfoFindsTheGapAndTheJumpOfALogAndOfItsTopics) {
   ASSERT_EQ(topic["gaps"].size(), 1u);
   EXPECT_NEAR(topic["gaps"][0]["after_s"].get<double>(), 2.0, 1e-9);
   EXPECT_NEAR(topic["gaps"][0]["length_s"].get<double>(), 3.0, 1e-9);
+}
+
+/// Messages of /tf at 10 Hz from each of three publishers, 1 ms after each other; of the third some
+/// are missing for half a second.
+std::vector<McapMessage> three_publishers() {
+  std::vector<McapMessage> messages;
+  constexpr std::int64_t start_ns = 1'700'000'000'000'000'000;
+  for (int i = 0; i <= 50; ++i) {
+    const std::int64_t t_ns = start_ns + std::int64_t{100'000'000} * i;
+    messages.push_back({t_ns, transform_message(t_ns, "map", "base_link", 1.0 * i, 0.0)});
+    messages.push_back({t_ns + 1'000'000, transform_message(t_ns, "base_link", "wheel", 0.0, 0.0)});
+    if (i > 20 && i < 25) continue;
+    messages.push_back(
+        {t_ns + 2'000'000, transform_message(t_ns, "base_link", "other_wheel", 0.0, 0.0)});
+  }
+  return messages;
+}
+
+TEST_F(DriveLog, InfoSaysRatesAndGapsOfTransformsByFrame) {
+  const std::string file =
+      folder_.write("tf.mcap", mcap_bytes("/tf", kTransforms, three_publishers(), ""));
+  const json found = info(file);
+  const json& topic = found["topics"][0];
+  EXPECT_EQ(topic["messages"], 51 + 51 + 47);
+  EXPECT_TRUE(topic["rate_hz"].is_null()) << topic["rate_hz"];
+  EXPECT_TRUE(topic["gaps"].empty());
+  ASSERT_EQ(topic["frames"].size(), 3u);
+  const std::size_t gaps[] = {1, 0, 0};
+  const std::string children[] = {"other_wheel", "wheel", "base_link"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(topic["frames"][i]["child"], children[i]);
+    EXPECT_NEAR(topic["frames"][i]["rate_hz"].get<double>(), 10.0, 1e-9);
+    EXPECT_EQ(topic["frames"][i]["gaps"].size(), gaps[i]);
+  }
+  EXPECT_NEAR(topic["frames"][0]["gaps"][0]["length_s"].get<double>(), 0.5, 1e-9);
+  const ProgramRun text = run_roadbed({"drive", "info", file});
+  EXPECT_THAT(text.out, HasSubstr("\n  wheel in base_link: 51 transforms, 10 Hz\n"));
+  EXPECT_THAT(text.out, HasSubstr("\n  other_wheel in base_link: 47 transforms, 10 Hz, 1 gaps\n"));
+}
+
+TEST_F(DriveLog, InfoSaysTheRateOfTransformsOfOneFrameWithTheirTopic) {
+  std::vector<McapMessage> messages = three_publishers();
+  std::erase_if(messages, [](const McapMessage& m) { return m.time_ns % 100'000'000 != 0; });
+  const json found = info(folder_.write("one.mcap", mcap_bytes("/tf", kTransforms, messages, "")));
+  EXPECT_NEAR(found["topics"][0]["rate_hz"].get<double>(), 10.0, 1e-9);
+}
+
+/// Points 0.5 m apart of a way to a stop, at 1 m/s²: in front of it they are far apart in time.
+std::string stopping_plan() {
+  CdrWriter cdr;
+  cdr.put(std::int32_t{5}).put(std::uint32_t{0}).text("map").put(std::uint32_t{51});
+  for (int i = 0; i <= 50; ++i) {
+    cdr.put(std::int32_t{0}).put(std::uint32_t{0});
+    cdr.put(0.5 * i).put(0.0).put(0.0).put(0.0).put(0.0).put(0.0).put(1.0);
+    cdr.put(static_cast<float>(std::sqrt(2.0 * (25.0 - 0.5 * i))));
+    for (int k = 0; k < 5; ++k) cdr.put(0.0F);
+  }
+  return cdr.bytes();
+}
+
+TEST_F(DriveLog, InfoFindsNoGapsInAPlan) {
+  const json found =
+      info(folder_.write("plan.mcap", mcap_bytes("/plan", "autoware_planning_msgs/msg/Trajectory",
+                                                 {{5, stopping_plan()}}, "")));
+  EXPECT_EQ(found["drive"]["rows"], 51);
+  EXPECT_TRUE(found["drive"]["gaps"].empty()) << found["drive"]["gaps"];
 }
 
 }  // namespace

@@ -25,12 +25,30 @@ using geometry::TrajectoryPoint;
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
-Json topic_json(const map::TopicContents& topic) {
+Json gaps_json(const std::vector<map::LogGap>& found, std::int64_t start_ns) {
   Json gaps = Json::array();
-  for (const map::LogGap& gap : topic.gaps) {
-    gaps.push_back({{"after_s", seconds(gap.from_ns - topic.first_ns)},
+  for (const map::LogGap& gap : found) {
+    gaps.push_back({{"after_s", seconds(gap.from_ns - start_ns)},
                     {"length_s", seconds(gap.to_ns - gap.from_ns)}});
   }
+  return gaps;
+}
+
+Json rate_json(double rate_hz) { return rate_hz > 0.0 ? Json(rate_hz) : Json(); }
+
+Json frames_json(const map::TopicContents& topic) {
+  Json frames = Json::array();
+  for (const map::FrameContents& frame : topic.frames) {
+    frames.push_back({{"parent", frame.parent},
+                      {"child", frame.child},
+                      {"transforms", frame.transforms},
+                      {"rate_hz", rate_json(frame.rate_hz)},
+                      {"gaps", gaps_json(frame.gaps, topic.first_ns)}});
+  }
+  return frames;
+}
+
+Json topic_json(const map::TopicContents& topic) {
   const bool has_any = topic.messages > 0;
   return {{"topic", topic.topic.name},
           {"type", topic.topic.type},
@@ -38,9 +56,10 @@ Json topic_json(const map::TopicContents& topic) {
           {"messages", topic.messages},
           {"first_ns", has_any ? Json(topic.first_ns) : Json()},
           {"last_ns", has_any ? Json(topic.last_ns) : Json()},
-          {"rate_hz", topic.rate_hz > 0.0 ? Json(topic.rate_hz) : Json()},
-          {"gaps", gaps},
-          {"backwards", topic.backwards}};
+          {"rate_hz", rate_json(topic.rate_hz)},
+          {"gaps", gaps_json(topic.gaps, topic.first_ns)},
+          {"backwards", topic.backwards},
+          {"frames", frames_json(topic)}};
 }
 
 double step_m(const TrajectoryPoint& from, const TrajectoryPoint& to) {
@@ -70,12 +89,7 @@ Json gaps_json(const std::vector<TrajectoryPoint>& rows) {
     times_ns.push_back(std::llround(1e9 * (row.t_s - rows.front().t_s)));
   }
   std::int64_t median_ns = 0;
-  Json gaps = Json::array();
-  for (const map::LogGap& gap : map::gaps_in(times_ns, median_ns)) {
-    gaps.push_back(
-        {{"after_s", seconds(gap.from_ns)}, {"length_s", seconds(gap.to_ns - gap.from_ns)}});
-  }
-  return gaps;
+  return gaps_json(map::gaps_in(times_ns, median_ns), 0);
 }
 
 Json drive_json(const DriveOfFile& read) {
@@ -98,9 +112,14 @@ Json drive_json(const DriveOfFile& read) {
             {"min_y_m", south->y_m},
             {"max_x_m", east->x_m},
             {"max_y_m", north->y_m}}},
-          {"gaps", gaps_json(rows)},
+          {"gaps", read.is_planned ? Json::array() : gaps_json(rows)},
           {"jumps", jumps_json(rows)},
           {"notes", read.notes}};
+}
+
+void print_rate(std::ostream& out, const Json& of) {
+  if (!of["rate_hz"].is_null()) fmt::print(out, ", {:.3g} Hz", of["rate_hz"].get<double>());
+  if (!of["gaps"].empty()) fmt::print(out, ", {} gaps", of["gaps"].size());
 }
 
 void print_topic(std::ostream& out, const Json& topic) {
@@ -110,12 +129,18 @@ void print_topic(std::ostream& out, const Json& topic) {
     fmt::print(out, ", {:.3f} s to {:.3f} s", seconds(topic["first_ns"].get<std::int64_t>()),
                seconds(topic["last_ns"].get<std::int64_t>()));
   }
-  if (!topic["rate_hz"].is_null()) fmt::print(out, ", {:.3g} Hz", topic["rate_hz"].get<double>());
-  if (!topic["gaps"].empty()) fmt::print(out, ", {} gaps", topic["gaps"].size());
+  print_rate(out, topic);
   if (topic["backwards"] != 0) {
     fmt::print(out, ", {} times backwards", topic["backwards"].get<std::size_t>());
   }
   out << '\n';
+  if (topic["frames"].size() < 2) return;
+  for (const Json& frame : topic["frames"]) {
+    fmt::print(out, "  {} in {}: {} transforms", frame["child"].get<std::string>(),
+               frame["parent"].get<std::string>(), frame["transforms"].get<std::size_t>());
+    print_rate(out, frame);
+    out << '\n';
+  }
 }
 
 void print_drive(std::ostream& out, const Json& drive) {
@@ -145,7 +170,8 @@ class DriveCommand : public Command {
     Arguments info = arguments.part("info");
     info.description(
         "Say what a log or a drive holds: topics with types, counts, times, rates, gaps of over "
-        "three intervals; of a drive length, speeds, bounds and jumps that its speed does not let");
+        "three intervals, of transforms by frame; of a drive length, speeds, bounds and jumps that "
+        "its speed does not let");
     info.add("F", input_, "Log (rosbag2: its folder or .db3; .mcap) or drive, as audit reads it")
         .required()
         .reads()
