@@ -66,7 +66,7 @@ class DriveOfPoses {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (!read_.poses[i].speed_mps) rows[i].speed_mps = speed_of_way_mps(rows, i);
     }
-    if (const auto fault = implausible_row(rows)) {
+    if (const auto fault = read_.has_rotations ? impossible_row(rows) : implausible_row(rows)) {
       refuse(fault->row, "", fault->found, fault->needed, fault->remedy);
     }
     return geometry::Trajectory(std::move(rows));
@@ -120,7 +120,7 @@ bool goes_upwards(const std::vector<DrivePose>& poses) {
 }
 
 DrivePoses of_log(const map::LogDrive& log, const DriveOptions& options) {
-  DrivePoses read{.unit = "pose", .pose_in_vehicle = Pose2{}};
+  DrivePoses read{.unit = "pose", .pose_in_vehicle = Pose2{}, .has_rotations = true};
   for (const map::TimedPose& at : log.poses) {
     const std::int64_t since_ns = at.stamp_ns - log.poses.front().stamp_ns;
     read.poses.push_back(flat_pose(1e-9 * static_cast<double>(since_ns), at.pose, options));

@@ -26,6 +26,7 @@ struct DrivePoses {
   std::string unit;  ///< what a place in messages counts: "pose", "line"
   std::vector<std::size_t> places = {};
   std::optional<geometry::Pose2> pose_in_vehicle = {};  ///< what the format says of it
+  bool has_rotations = false;  ///< which cannot be degrees, however they fit the way
 };
 
 /// Of an upright body; heading is that of its x axis in the plane, or a camera's z axis.

@@ -83,7 +83,7 @@ bool begins_as_pose_lines(std::string_view bytes) {
 
 DrivePoses parse_pose_lines(std::string_view bytes, const std::string& name,
                             const DriveOptions& options) {
-  DrivePoses read{.unit = "line"};
+  DrivePoses read{.unit = "line", .has_rotations = true};
   std::size_t line_number = 0, width = 0;
   double step_s = 0.0;
   for (std::string_view rest = bytes; !rest.empty();) {

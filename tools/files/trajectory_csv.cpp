@@ -237,6 +237,10 @@ std::optional<ImplausibleRow> implausible_row(const std::vector<TrajectoryPoint>
   return impossible_step(rows);
 }
 
+std::optional<ImplausibleRow> impossible_row(const std::vector<TrajectoryPoint>& rows) {
+  return impossible_step(rows);
+}
+
 std::string curvature_note(const geometry::Trajectory& drive, const geometry::VehicleShape& shape) {
   constexpr double beyond = 1.02, least_turn_rad = 0.05;
   const double most_per_m = std::tan(shape.max_steering_rad) / shape.wheelbase_m;

@@ -30,9 +30,9 @@ struct Audit {
   std::shared_ptr<const map::OccupancySource> occupancy;
   std::filesystem::path occupancy_file;
   Trajectory trajectory;
-  VehicleOfFile vehicle;
+  VehicleOfFile vehicle = {};
   bool has_usual_vehicle = true;
-  Obstacles obstacles;
+  Obstacles obstacles = {};
   double underside_m = 0.2;
   RoadMapPointer road_map = nullptr;
   std::filesystem::path map_file = {};

@@ -406,9 +406,9 @@ TEST(LogDrive, IsOfTheOnlyBodyInANamespaceOrOnTheGround) {
 TEST(LogDrive, HoldsATransformThatWasSaidOnce) {
   std::vector<Recorded> by_transforms, by_poses = odometry_in("odom");
   for (int i = 0; i < 250; ++i) {
-    by_transforms.push_back(
-        {"/tf", kTransforms,
-         transform_message(kStart_ns + 20'000'000 * i, "odom", "base_link", 1.0 * i, 0.0)});
+    by_transforms.push_back({"/tf", kTransforms,
+                             transform_message(kStart_ns + std::int64_t{20'000'000} * i, "odom",
+                                               "base_link", 1.0 * i, 0.0)});
   }
   for (auto* log : {&by_transforms, &by_poses}) {
     const std::size_t rows = log->size();
@@ -418,7 +418,8 @@ TEST(LogDrive, HoldsATransformThatWasSaidOnce) {
     ASSERT_EQ(drive.poses.size(), rows);
     EXPECT_TRUE(drive.notes.empty());
     EXPECT_NEAR(drive.poses.front().pose.translation().x(), 300.0, 1e-12);
-    EXPECT_NEAR(drive.poses.back().pose.translation().x(), 300.0 + 1.0 * (rows - 1.0), 1e-12);
+    EXPECT_NEAR(drive.poses.back().pose.translation().x(), 300.0 + static_cast<double>(rows - 1),
+                1e-12);
   }
 }
 

@@ -273,7 +273,8 @@ TEST_F(AuditCommand, ProvesNothingWhereTheLogSaysNoPose) {
   const std::string proof = folder_ / "proof.json";
   EXPECT_EQ(audit({"--trajectory", folder_.write("whole.mcap", log_with_gap(false))}).status, 0);
   const std::string gapped = folder_.write("gapped.mcap", log_with_gap(true));
-  const ProgramRun run = audit({"--trajectory", gapped, "--certificate", proof, "--json"});
+  const ProgramRun run = audit({"--trajectory", gapped, "--save-drive", folder_ / "saved.csv",
+                                "--certificate", proof, "--json"});
   EXPECT_EQ(run.status, 1);
   EXPECT_THAT(run.err, HasSubstr("gapped.mcap: 1 gap between poses, of 0.800 s after 0.500 s"));
   const auto json = nlohmann::json::parse(run.out);
@@ -284,10 +285,18 @@ TEST_F(AuditCommand, ProvesNothingWhereTheLogSaysNoPose) {
   EXPECT_NEAR(json["stretches"][1]["from_s"].get<double>(), 0.5, 1e-9);
   EXPECT_NEAR(json["stretches"][1]["to_s"].get<double>(), 1.3, 1e-9);
   EXPECT_EQ(run_roadbed({"audit", "--check", proof}).status, 0);
-  EXPECT_EQ(nlohmann::json::parse(bytes_of(proof))["parts"][0]["verdict"], "unknown");
+  EXPECT_EQ(nlohmann::json::parse(bytes_of(proof))["verdict"], "unknown");
   const ProgramRun text = audit({"--trajectory", gapped, "--quiet"});
   EXPECT_THAT(text.out, HasSubstr("0.500 s to 1.300 s: the log says no pose of the vehicle"));
   EXPECT_EQ(text.err, "");
+  const std::string field = folder_.write(
+      "field.geojson",
+      R"({"type":"Polygon","coordinates":[[[-80,-80],[80,-80],[80,80],[-80,80],[-80,-80]]]})");
+  const ProgramRun road =
+      run_roadbed({"audit", "--on", "area:" + field, "--trajectory", gapped, "--save-drive",
+                   folder_ / "saved.csv", "--certificate", proof, "--force"});
+  EXPECT_EQ(road.status, 3);
+  EXPECT_THAT(road.err, HasSubstr("no pose from 0.500 s to 1.300 s"));
 }
 
 }  // namespace

@@ -204,6 +204,17 @@ TEST(DriveFile, ThatGoesAlongZIsACameras) {
   EXPECT_NE(fault_of(tum_along_z(0.0, 2.6), upright), "");
 }
 
+// As 0.3 degrees the headings would fit a way along x; but a rotation has no unit.
+TEST(DriveFile, OfRotationsHasNoHeadingsInDegrees) {
+  std::string text;
+  for (int i = 0; i < 10; ++i) {
+    text += fmt::format("{} {} 0 0 0 0 {} {}\n", i, 2 * i, std::sin(0.15), std::cos(0.15));
+  }
+  const auto drive = parse_drive(text, "a drive", {.pose_frame = PoseFrame{}});
+  EXPECT_NEAR(drive.points().back().heading_rad, 0.3, 1e-12);
+  EXPECT_NEAR(drive.points().back().x_m, 18.0, 1e-12);
+}
+
 TEST(DriveFile, OfASolutionIsNoCameras) {
   const std::string solution = point_mass(point_mass_state(0, 5.0, 0.0, 1.0));
   EXPECT_NE(
@@ -263,6 +274,19 @@ TEST(DriveFile, TakesNoTimeForAGapThatIsShortInItselfOrAmongTheOthers) {
   EXPECT_EQ(drive_of_log_at(tenths_without(20, 26)).gaps.size(), 1u);
   const DriveOfFile seldom = drive_of_log_at({0, 10, 20, 30, 80});  // five medians of a second
   EXPECT_TRUE(seldom.gaps.empty() && seldom.notes.empty());
+}
+
+TEST(DriveFile, TakesHeadingsOfQuaternionsForRadiansWhateverTheWay) {
+  // A body that slides: as degrees -0.48 would fit the way, along 0.02 rad, within 0.03 rad.
+  std::vector<tests::McapMessage> messages;
+  for (int i = 0; i <= 50; ++i) {
+    const std::int64_t t_ns = 1'700'000'000'000'000'000 + std::int64_t{100'000'000} * i;
+    messages.push_back({t_ns, tests::odometry_message(t_ns, 1.0 * i, 0.02 * i, -0.48, 10.0)});
+  }
+  const tests::TemporaryFolder folder;
+  const auto log =
+      folder.write("a.mcap", tests::mcap_bytes("/odom", "nav_msgs/msg/Odometry", messages, ""));
+  EXPECT_NEAR(read_drive(log, {}).drive.points().front().heading_rad, -0.48, 1e-12);
 }
 
 TEST(DriveFile, SaysWhichStepsNoCarMakes) {

@@ -63,6 +63,17 @@ void refuse_certificate_of_streams(const AuditAsked& asked, const AuditSubjects&
 }
 
 // Who checks it gets the drive as it was audited, and needs no options to read it.
+// That of a surface has no word for what is unknown.
+void refuse_certificate_of_gaps(const AuditedDrive& audited) {
+  if (audited.between_poses.empty()) return;
+  const planning::Stretch& gap = audited.between_poses.front();
+  throw map::InputError(
+      {.file = audited.name,
+       .found = fmt::format("its log says no pose from {:.3f} s to {:.3f} s", gap.from_s, gap.to_s),
+       .needed = "all of the drive for a certificate of --on alone",
+       .remedy = "leave out --certificate"});
+}
+
 void refuse_certificate_of_logs(const AuditSubjects& subjects) {
   if (subjects.is_swept() || subjects.is_folder() || is_drive_table(subjects.file())) return;
   throw map::InputError({.file = map::input_name(subjects.file()),
@@ -155,6 +166,7 @@ void AuditOutputs::check_for_folder() const {
 }
 
 void AuditOutputs::write_one(const AuditedDrive& audited, const AuditScene& scene) const {
+  if (certifies() && !audited.has_occupancy) refuse_certificate_of_gaps(audited);
   write_saved(audited, scene);
   write_picture(audited, scene);
   write_report(audited, scene);
