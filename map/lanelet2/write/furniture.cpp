@@ -105,9 +105,11 @@ class FurnitureMaker {
       return made_.lanelets[lane.index].has_value();
     });
     if (!speaks || made_.lines.contains(signal.source_id)) return;
-    const std::uint32_t light =
-        add_line(face(signal), {{"type", "traffic_light"}, {"subtype", "red_yellow_green"}},
-                 signal.source_id);
+    Attributes tags{{"type", "traffic_light"}, {"subtype", "red_yellow_green"}};
+    for (const auto& [key, value] : signal.attributes) {
+      if (key == "height") tags.emplace_back(key, value);
+    }
+    const std::uint32_t light = add_line(face(signal), std::move(tags), signal.source_id);
     made_.lines.emplace(signal.source_id, light);
     std::vector<OsmMember> members{{MemberKind::way, light, "refers"}};
     for (std::size_t i = 0; i < road_map_.stop_lines().size(); ++i) {

@@ -40,6 +40,12 @@ std::vector<std::pair<std::string, std::size_t>> lost_of(const RoadMap& road_map
   if (made.left_out > 0) lost.emplace_back("lanes that nobody may use", made.left_out);
   const std::size_t limits = flattened_limits(road_map, made);
   if (limits > 0) lost.emplace_back(kFlattenedLimits, limits);
+  if (is_from_lanelet2(road_map)) return lost;
+  for (const auto& [what, count] : {std::pair{"junctions", road_map.junctions().size()},
+                                    {"controllers", road_map.controllers().size()},
+                                    {"regulations", road_map.regulations().size()}}) {
+    if (count > 0) lost.emplace_back(what, count);
+  }
   return lost;
 }
 

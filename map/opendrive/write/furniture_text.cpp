@@ -39,10 +39,10 @@ struct LaneSpot {
 };
 
 std::string_view object_type(std::string_view word) {
-  static constexpr std::array<std::string_view, 14> words = {
-      "obstacle",  "pole",         "tree",   "vegetation",  "barrier",
-      "building",  "parkingSpace", "patch",  "railing",     "trafficIsland",
-      "crosswalk", "streetLamp",   "gantry", "soundBarrier"};
+  static constexpr std::array<std::string_view, 15> words = {
+      "obstacle",  "pole",         "tree",   "vegetation",   "barrier",
+      "building",  "parkingSpace", "patch",  "railing",      "trafficIsland",
+      "crosswalk", "streetLamp",   "gantry", "soundBarrier", "roadMark"};
   return std::find(words.begin(), words.end(), word) == words.end() ? "none" : word;
 }
 
@@ -186,6 +186,9 @@ class FurnitureWriter {
            xml_text(signal.subtype.empty() ? "-1" : signal.subtype));
     if (signal.value) add_value(*signal.value, signal.unit, text);
     if (!signal.text.empty()) add_to(text, " text=\"{}\"", xml_text(signal.text));
+    for (const auto& [key, size_m] : signal.attributes) {
+      if (key == "height" || key == "width") add_to(text, " {}=\"{}\"", key, xml_text(size_m));
+    }
     if (signal.heading_rad) {
       add_to(text, " hOffset=\"{}\"",
              short_number(geometry::wrap_angle(*signal.heading_rad - faces_rad)));

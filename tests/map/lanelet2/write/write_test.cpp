@@ -138,6 +138,21 @@ TEST(WriteLanelet2, LaneChangesAreSaidByTheLineOrItsTags) {
   }
 }
 
+TEST(WriteLanelet2, NamesWhatItHasNoElementFor) {
+  const RoadMap town = load_map(tests::data_folder() / "town.xodr");
+  const auto file = lanelet2::write_lanelet2(town, {.crs = "EPSG:32632", .offset_in_crs = {}});
+  const auto count = [&](const std::string& what) {
+    for (const auto& [name, number] : file.lost) {
+      if (name == what) return number;
+    }
+    return std::size_t{0};
+  };
+  EXPECT_EQ(count("junctions"), town.junctions().size());
+  EXPECT_EQ(count("controllers"), town.controllers().size());
+  EXPECT_EQ(count("regulations"), town.regulations().size());
+  EXPECT_GT(count("junctions"), 0u);
+}
+
 TEST(WriteLanelet2, EndsAreJoinedByLinksAndNotByTouching) {
   tests::MadeMap made;
   const RoadId road = made.add_road("1");
