@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <map>
 
 #include "roadbed/map/commonroad/build_map.h"
 #include "roadbed/map/commonroad/values.h"
+#include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::map::commonroad {
 namespace {
@@ -70,6 +73,34 @@ Attributes file_attributes(pugi::xml_node root) {
   return attributes;
 }
 
+/// Where the map's coordinates are in its system: turned, then moved there, as CommonRoad's own
+/// converters take it.
+CrsOffset offset_of(const XmlDocument& xml, std::vector<ImportDiagnostic>& remarks) {
+  const pugi::xml_node transformation = xml.root().child("location").child("geoTransformation");
+  const pugi::xml_node extra = transformation.child("additionalTransformation");
+  const auto number = [&](const char* name, double otherwise) {
+    const pugi::xml_node part = extra.child(name);
+    if (!part) return otherwise;
+    const std::string text = text_of(part);
+    double value = 0.0;
+    const char* const end = text.data() + text.size();
+    const auto [rest, fault] = std::from_chars(text.data(), end, value);
+    if (fault == std::errc() && rest == end && std::isfinite(value)) return value;
+    remarks.push_back(
+        {"import.geo-transformation", true, std::string(name), 0,
+         fmt::format("is \"{}\", no number; {} is taken", one_line(text), otherwise)});
+    return otherwise;
+  };
+  const CrsOffset offset{.x_m = number("xTranslation", 0.0),
+                         .y_m = number("yTranslation", 0.0),
+                         .heading_rad = number("zRotation", 0.0)};
+  if (const double scaling = number("scaling", 1.0); scaling != 1.0) {
+    remarks.push_back({"import.geo-transformation", true, "scaling", 0,
+                       fmt::format("is {}: the map stays as large as it is", scaling)});
+  }
+  return offset;
+}
+
 std::string format_name(const XmlDocument& xml) {
   const std::string version = xml.root().attribute("commonRoadVersion").value();
   if (version != "2018b" && version != "2020a") {
@@ -89,6 +120,7 @@ RoadMapParts read(const Document& document) {
   parts.attributes = file_attributes(xml.root());
   parts.crs =
       text_of(xml.root().child("location").child("geoTransformation").child("geoReference"));
+  parts.offset_in_crs = offset_of(xml, parts.remarks);
   parts.unused = unused_content(xml.root());
   BuiltLanes built = build_lanes(document, parts.origin_in_source, parts.remarks);
   if (built.lanes.empty()) {

@@ -91,7 +91,7 @@ class FileWriter {
 
   bool is_written(LaneId id) const { return plan_.lane_ids[id.index] != kNoLanelet; }
 
-  std::string file_attribute(std::string_view key, const char* fallback) const {
+  std::string file_attribute(std::string_view key, const std::string& fallback) const {
     for (const auto& [name, value] : road_map_.attributes()) {
       if (name == key) return xml_text(value);
     }
@@ -112,13 +112,14 @@ class FileWriter {
         file_attribute("geoNameId", "-999"), file_attribute("gpsLatitude", "999"),
         file_attribute("gpsLongitude", "999"));
     if (!road_map_.crs().empty()) {
+      const CrsOffset& offset = road_map_.offset_in_crs();
       add("<geoTransformation><geoReference>{}</geoReference><additionalTransformation>"
           "<xTranslation>{}</xTranslation><yTranslation>{}</yTranslation>"
           "<zRotation>{}</zRotation><scaling>{}</scaling></additionalTransformation>"
           "</geoTransformation>",
-          xml_text(road_map_.crs()), file_attribute("xTranslation", "0"),
-          file_attribute("yTranslation", "0"), file_attribute("zRotation", "0"),
-          file_attribute("scaling", "1"));
+          xml_text(road_map_.crs()), file_attribute("xTranslation", decimal(offset.x_m)),
+          file_attribute("yTranslation", decimal(offset.y_m)),
+          file_attribute("zRotation", decimal(offset.heading_rad)), file_attribute("scaling", "1"));
     }
     text_ += "</location>\n <scenarioTags/>\n";
   }

@@ -58,6 +58,9 @@ class PointMapping {
     from_lon_lat(*options_.to, points);
   }
 
+  /// How much higher all is: in another system the header's offset is taken in.
+  double up_m() const { return options_.motion.shift_m.z() + (options_.to ? offset_.z_m : 0.0); }
+
   bool is_rigid() const { return !options_.to; }
 
  private:
@@ -311,7 +314,7 @@ class Mover {
   }
 
   void lift_grid(pugi::xml_node junction) const {
-    const double up_m = options_.motion.shift_m.z();
+    const double up_m = mapping_.up_m();
     if (up_m == 0.0) return;
     for (const auto row : junction.child("elevationGrid").children("elevation")) {
       for (const char* side : {"center", "left", "right"}) raise_list(row.attribute(side), up_m);
@@ -319,7 +322,7 @@ class Mover {
   }
 
   void lift(pugi::xml_node road) const {
-    const double up_m = options_.motion.shift_m.z();
+    const double up_m = mapping_.up_m();
     if (up_m == 0.0) return;
     pugi::xml_node profile = ordered_child(road, "elevationProfile", kRoadOrder);
     if (!profile.child("elevation")) {
@@ -344,7 +347,7 @@ class Mover {
         set_number(inertial, "x", points[0].x());
         set_number(inertial, "y", points[0].y());
         set_number(inertial, "hdg", std::atan2(along.y(), along.x()));
-        set_number(inertial, "z", number(inertial, "z") + options_.motion.shift_m.z());
+        set_number(inertial, "z", number(inertial, "z") + mapping_.up_m());
       }
     }
   }

@@ -226,6 +226,9 @@ class FileWriter {
     lose("stop lines near no road", furniture_.lost_stop_lines);
     lose("objects near no road", furniture_.lost_objects);
     lose("ids of roads, which are no whole numbers", lost_ids());
+    const bool has_place = options_.minor >= 5 || options_.offset_in_crs == CrsOffset{};
+    lose("place of the coordinates in their system, which a header has from 1.5 on",
+         has_place ? 0 : 1);
     lose("users of lanes", losses_.access);
     lose("directions of lanes", losses_.direction);
     for (const std::string& lane : plan_.left_out) {

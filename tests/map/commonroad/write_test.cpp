@@ -145,6 +145,16 @@ TEST(WriteCommonRoad, WhatIsNotWrittenIsCounted) {
                          {"objects", 1}}));
 }
 
+TEST(WriteCommonRoad, SaysWhereItsCoordinatesAreInTheirSystem) {
+  tests::MadeMap made = tests::straight_two_lane_road();
+  made.parts.crs = "EPSG:25832";
+  made.parts.offset_in_crs = {.x_m = 500'000.0, .y_m = 5'400'000.5, .heading_rad = 0.25};
+  const RoadMap back = there_and_back(made.build());
+  EXPECT_EQ(back.crs(), "EPSG:25832");
+  EXPECT_EQ(back.offset_in_crs(), made.parts.offset_in_crs);
+  EXPECT_TRUE(back.import_diagnostics().empty());
+}
+
 TEST(WriteCommonRoad, TheCountryIsThatOfTheSigns) {
   tests::MadeMap made = tests::straight_two_lane_road();
   Signal sign;

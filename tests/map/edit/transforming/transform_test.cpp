@@ -48,6 +48,27 @@ TEST(Transform, MovesEveryBorderOfARoad) {
   expect_moved(parse_map(bytes, "a.xodr"), parse_map(moved.bytes, "b.xodr"), 1e-6);
 }
 
+/// The header's offset leads to the system, in height, too.
+TEST(Transform, TakesTheHeadersOffsetIn) {
+  std::string bytes = tests::curved_road_xml();
+  const std::size_t inside = bytes.find('>', bytes.find("<header")) + 1;
+  ASSERT_NE(bytes[inside - 2], '/');
+  bytes.insert(inside,
+               "<geoReference>EPSG:25832</geoReference>"
+               "<offset x=\"500000\" y=\"5400000\" z=\"120\" hdg=\"0\"/>");
+  const Edited there = transform(bytes, "a.xodr", {.motion = {}, .to = "EPSG:25832", .crs = {}});
+  const RoadMap before = parse_map(bytes, "a.xodr"), after = parse_map(there.bytes, "b.xodr");
+  EXPECT_EQ(after.offset_in_crs(), CrsOffset{});
+  ASSERT_EQ(before.lanes().size(), after.lanes().size());
+  for (const Lane& lane : before.lanes()) {
+    const LaneLine &line = lane.left, &moved = after.lane(lane.id).left;
+    EXPECT_NEAR(moved.z_m.front(), line.z_m.front() + 120.0, 1e-9);
+    const Vector2d at = before.to_source(line.in_map.points().front());
+    const Vector2d there_m = after.to_source(moved.in_map.points().front());
+    EXPECT_LT((there_m - at - Vector2d(500'000.0, 5'400'000.0)).norm(), 1e-3);
+  }
+}
+
 TEST(Transform, MovesEveryBorderOfALanelet) {
   const std::string bytes = read_file(tests::data_folder() / "crossing.osm");
   const Edited moved = transform(bytes, "crossing.osm", {.motion = kMotion, .to = {}, .crs = {}});

@@ -483,6 +483,29 @@ TEST(WriteOpenDrive, KeepsCoordinatesAndTheirSystem) {
   EXPECT_EQ(after.format(), "OpenDRIVE 1.8");
 }
 
+TEST(WriteOpenDrive, NamesThePlaceInItsSystemWhereAVersionHasNone) {
+  const RoadMap town = load_map(tests::data_folder() / "town.xodr");
+  const CrsOffset offset{.x_m = 500'000.0, .y_m = 5'400'000.0};
+  const auto lost = [&](int minor) {
+    const auto file = opendrive::write_open_drive(town, {"EPSG:25832", offset, minor});
+    return std::ranges::count_if(file.lost, [](const auto& entry) {
+      return entry.first.starts_with("place of the coordinates");
+    });
+  };
+  EXPECT_EQ(lost(4), 1);
+  EXPECT_EQ(lost(5), 0);
+}
+
+TEST(WriteOpenDrive, SignalsKeepTheirSize) {
+  tests::MadeRoad road;
+  road.rest = R"(<signals><signal s="50" t="-4" id="7" name="l" dynamic="yes" orientation="+"
+                  zOffset="3" country="OpenDRIVE" type="1000001" subtype="-1" height="0.9"
+                  width="0.3"/></signals>)";
+  const RoadMap before = tests::made_map(tests::made_road(road));
+  const std::string bytes = file_of(before).bytes;
+  EXPECT_NE(bytes.find(R"(height="0.9" width="0.3")"), std::string::npos);
+}
+
 TEST(WriteOpenDrive, ALaneIsLeftOnlyWhereTheMapAllowsIt) {
   // Along a lane that narrows, so that its stations are not the road's.
   constexpr auto kMarks = R"(<roadMark sOffset="4" type="broken" laneChange="none"/>
