@@ -53,6 +53,32 @@ void add_ends(const Document& file, std::size_t index, std::vector<LaneletEnd>& 
   }
 }
 
+bool has_height(const Document& file, std::uint32_t node) {
+  const Attributes tags = file.tags_of(file.nodes[node].at);
+  return std::any_of(tags.begin(), tags.end(), [](const auto& tag) { return tag.first == "ele"; });
+}
+
+/// A node of one of the files.
+struct NodeOfFile {
+  const Document& file;
+  std::uint32_t node;
+
+  Eigen::Vector2d in_source() const {
+    return file.origin_in_source + file.nodes[node].in_map.head<2>();
+  }
+  double height_m() const { return file.nodes[node].in_map.z(); }
+};
+
+// In space where both say how high they are, else in the plane.
+double distance_m(const NodeOfFile& a, const NodeOfFile& b) {
+  const double in_plane_m = (a.in_source() - b.in_source()).norm();
+  const double rise_m = a.height_m() - b.height_m();
+  if (rise_m == 0.0 || !has_height(a.file, a.node) || !has_height(b.file, b.node)) {
+    return in_plane_m;
+  }
+  return std::hypot(in_plane_m, rise_m);
+}
+
 Id root_of(Id node, const std::map<Id, Id>& one) {
   for (auto next = one.find(node); next != one.end(); next = one.find(node)) node = next->second;
   return node;
@@ -71,22 +97,21 @@ std::map<Id, Id> nodes_to_join(const std::vector<Document>& files,
                                double tolerance_m, std::vector<Seam>& seams) {
   std::vector<LaneletEnd> ends;
   for (std::size_t f = 0; f < files.size(); ++f) add_ends(files[f], f, ends);
-  const auto place = [&](const LaneletEnd& end, std::uint32_t node) -> Eigen::Vector2d {
-    const Document& file = files[end.file];
-    return file.origin_in_source + file.nodes[node].in_map.head<2>();
+  const auto place = [&](const LaneletEnd& end, std::uint32_t node) {
+    return NodeOfFile{files[end.file], node};
   };
   const auto name = [&](const LaneletEnd& end, std::uint32_t node) {
     return called(end.file, files[end.file].nodes[node].id);
   };
   std::vector<geometry::Box> boxes;
-  for (const LaneletEnd& end : ends) boxes.emplace_back(place(end, end.left));
+  for (const LaneletEnd& end : ends) boxes.emplace_back(place(end, end.left).in_source());
   const geometry::BoxTree tree(boxes);
   const Eigen::Vector2d reach = Eigen::Vector2d::Constant(tolerance_m);
 
   std::map<Id, Id> one;
   for (const LaneletEnd& end : ends) {
     if (end.is_start) continue;
-    const Eigen::Vector2d left = place(end, end.left), right = place(end, end.right);
+    const Eigen::Vector2d left = place(end, end.left).in_source();
     std::vector<std::size_t> near;
     tree.visit(geometry::Box(left - reach, left + reach),
                [&](std::size_t i) { near.push_back(i); });
@@ -94,8 +119,8 @@ std::map<Id, Id> nodes_to_join(const std::vector<Document>& files,
     for (const std::size_t i : near) {
       const LaneletEnd& next = ends[i];
       if (!next.is_start || next.file == end.file) continue;
-      const double gap_m = std::max((place(next, next.left) - left).norm(),
-                                    (place(next, next.right) - right).norm());
+      const double gap_m = std::max(distance_m(place(next, next.left), place(end, end.left)),
+                                    distance_m(place(next, next.right), place(end, end.right)));
       const Id from_left = name(end, end.left), from_right = name(end, end.right),
                to_left = name(next, next.left), to_right = name(next, next.right);
       if (gap_m > tolerance_m || (from_left == to_left && from_right == to_right)) continue;

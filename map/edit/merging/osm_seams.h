@@ -11,7 +11,8 @@
 namespace roadbed::map::inline edit::inline merging {
 
 /// Nodes that become one where a lanelet of one file ends and one of another begins: both ends of
-/// its borders are at most the tolerance apart, and are not one already. Adds a seam for each pair.
+/// its borders are at most the tolerance apart, and are not one already. They are apart in space
+/// where both nodes have a height, else in the plane. Adds a seam for each pair.
 /// @param called  what a node of a file is called in the merged map.
 /// @returns for each node that goes, the one that stays, by these names.
 std::map<std::int64_t, std::int64_t> nodes_to_join(

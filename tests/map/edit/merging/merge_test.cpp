@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <random>
 #include <string>
 
@@ -106,13 +107,15 @@ TEST(Merge, RefusesOtherSystemsUnlessToldHow) {
 }
 
 // Two lanelets end to end; the second begins a little beside where the first one ends.
-std::string lanelet_at(double x, std::int64_t id) {
+std::string lanelet_at(double x, std::int64_t id, std::optional<double> height_m = {}) {
   std::string text = "<osm version=\"0.6\">\n";
+  const std::string height =
+      height_m ? fmt::format("    <tag k=\"ele\" v=\"{}\" />\n", *height_m) : "";
   const auto node = [&](int i, double east, double north) {
     text += fmt::format(
         "  <node id=\"{}\" lat=\"0\" lon=\"0\">\n    <tag k=\"local_x\" v=\"{}\" />\n    <tag "
-        "k=\"local_y\" v=\"{}\" />\n  </node>\n",
-        10 * id + i, east, north);
+        "k=\"local_y\" v=\"{}\" />\n{}  </node>\n",
+        10 * id + i, east, north, height);
   };
   node(1, x, 2), node(2, x + 50, 2), node(3, x, -2), node(4, x + 50, -2);
   for (const int side : {5, 6}) {
@@ -134,6 +137,34 @@ TEST(MergeLanelet2, LinksEndsThatCoincide) {
   ASSERT_EQ(road_map.lanes().size(), 2u);
   EXPECT_EQ(road_map.graph().of(LaneId{0}).successors, std::vector<LaneId>{LaneId{1}});
   ASSERT_EQ(merged.seams.size(), 1u);
+  EXPECT_NEAR(merged.seams[0].gap_m, 0.03, 1e-9);
+}
+
+TEST(MergeLanelet2, JoinsNoEndsAtOtherHeights) {
+  const Merged merged = merge({{lanelet_at(0, 1, 0), "a.osm"}, {lanelet_at(50, 2, 8), "b.osm"}});
+  EXPECT_TRUE(merged.seams.empty());
+  const RoadMap road_map = parse_map(merged.bytes, "merged.osm");
+  ASSERT_EQ(road_map.lanes().size(), 2u);
+  EXPECT_TRUE(road_map.graph().of(LaneId{0}).successors.empty());
+  std::size_t high = 0;
+  for (std::size_t at = 0; (at = merged.bytes.find("v=\"8\"", at)) != std::string::npos; ++at) {
+    ++high;
+  }
+  EXPECT_EQ(high, 4u) << "nodes of the bridge";
+}
+
+TEST(MergeLanelet2, SaysHowFarEndsAreApartInSpace) {
+  const Merged merged =
+      merge({{lanelet_at(0, 1, 0), "a.osm"}, {lanelet_at(50.03, 2, 0.03), "b.osm"}});
+  ASSERT_EQ(merged.seams.size(), 1u);
+  EXPECT_EQ(merged.seams[0].what, "linked");
+  EXPECT_NEAR(merged.seams[0].gap_m, std::hypot(0.03, 0.03), 1e-9);
+}
+
+TEST(MergeLanelet2, JoinsEndsOfWhichOneHasNoHeight) {
+  const Merged merged = merge({{lanelet_at(0, 1), "a.osm"}, {lanelet_at(50.03, 2, 8), "b.osm"}});
+  ASSERT_EQ(merged.seams.size(), 1u);
+  EXPECT_EQ(merged.seams[0].what, "linked");
   EXPECT_NEAR(merged.seams[0].gap_m, 0.03, 1e-9);
 }
 
