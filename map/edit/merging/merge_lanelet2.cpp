@@ -55,7 +55,11 @@ class LaneletMerger {
     const auto called = [&](std::size_t f, OsmId node) {
       return renamed(one_.names(f).nodes, node);
     };
-    const OsmNames one = nodes_to_join(files_, called, options_.tolerance_m, result.seams);
+    const auto lanelet_called = [&](std::size_t f, OsmId lanelet) {
+      return renamed(one_.names(f).relations, lanelet);
+    };
+    const OsmNames one =
+        nodes_to_join(files_, called, lanelet_called, options_.tolerance_m, result.seams);
     for (auto& [whole, parts] : ways_) {
       for (WayPart& part : parts) {
         for (OsmId& node : part.nodes) node = renamed(one, node);

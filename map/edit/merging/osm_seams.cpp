@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "roadbed/geometry/index/box_tree.h"
-#include "roadbed/map/edit/osm_edit.h"
+#include "roadbed/map/edit/merging/lanelet_identities.h"
 #include "roadbed/map/lanelet2/centreline.h"
 
 namespace roadbed::map::inline edit::inline merging {
@@ -19,7 +19,7 @@ using Id = std::int64_t;
 /// Where a lanelet begins or ends.
 struct LaneletEnd {
   std::size_t file;
-  Id lanelet, whole;  ///< itself, and what it is a part of
+  Id whole;  ///< what it is, or is a part of, in the merged map
   bool is_start;
   std::uint32_t left, right;  ///< nodes of its file
 };
@@ -34,20 +34,20 @@ const lanelet2::Way* border(const Document& file, const lanelet2::Relation& lane
   return nullptr;
 }
 
-void add_ends(const Document& file, std::size_t index, std::vector<LaneletEnd>& ends) {
+void add_ends(const Document& file, std::size_t index, const CalledInMerged& called,
+              std::vector<LaneletEnd>& ends) {
   for (const lanelet2::Relation& relation : file.relations) {
     if (relation.type != "lanelet") continue;
     const lanelet2::Way *left = border(file, relation, "left"),
                         *right = border(file, relation, "right");
     if (left == nullptr || right == nullptr) continue;
-    const Id whole = lanelet2::id_in(tag_value(relation.tags, kClipKey)).value_or(relation.id);
+    const Id whole = called(index, LaneletIdentities::whole_of(relation));
     const auto alignment = lanelet2::align(file.points(*left), file.points(*right));
     const auto end = [](const lanelet2::Way& way, bool first) {
       return first ? way.nodes.front() : way.nodes.back();
     };
     for (const bool is_start : {true, false}) {
-      ends.push_back({index, relation.id, whole, is_start,
-                      end(*left, is_start != alignment.left_reversed),
+      ends.push_back({index, whole, is_start, end(*left, is_start != alignment.left_reversed),
                       end(*right, is_start != alignment.right_reversed)});
     }
   }
@@ -92,11 +92,11 @@ void unite(Id a, Id b, std::map<Id, Id>& one) {
 
 }  // namespace
 
-std::map<Id, Id> nodes_to_join(const std::vector<Document>& files,
-                               const std::function<Id(std::size_t file, Id node)>& called,
-                               double tolerance_m, std::vector<Seam>& seams) {
+std::map<Id, Id> nodes_to_join(const std::vector<Document>& files, const CalledInMerged& called,
+                               const CalledInMerged& lanelet_called, double tolerance_m,
+                               std::vector<Seam>& seams) {
   std::vector<LaneletEnd> ends;
-  for (std::size_t f = 0; f < files.size(); ++f) add_ends(files[f], f, ends);
+  for (std::size_t f = 0; f < files.size(); ++f) add_ends(files[f], f, lanelet_called, ends);
   const auto place = [&](const LaneletEnd& end, std::uint32_t node) {
     return NodeOfFile{files[end.file], node};
   };
@@ -125,8 +125,8 @@ std::map<Id, Id> nodes_to_join(const std::vector<Document>& files,
                to_left = name(next, next.left), to_right = name(next, next.right);
       if (gap_m > tolerance_m || (from_left == to_left && from_right == to_right)) continue;
       const bool is_one = end.whole == next.whole;  // is put together anyhow
-      seams.push_back({fmt::format("end of lanelet {}", end.lanelet),
-                       fmt::format("start of lanelet {}", next.lanelet), gap_m,
+      seams.push_back({fmt::format("end of lanelet {}", end.whole),
+                       fmt::format("start of lanelet {}", next.whole), gap_m,
                        is_one ? "joined" : "linked", left.x(), left.y()});
       if (is_one) continue;
       if (from_left != to_left) unite(from_left, to_left, one);

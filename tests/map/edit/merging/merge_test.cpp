@@ -140,6 +140,18 @@ TEST(MergeLanelet2, LinksEndsThatCoincide) {
   EXPECT_NEAR(merged.seams[0].gap_m, 0.03, 1e-9);
 }
 
+// Two files that number their elements alike, as editors do from 1 on.
+TEST(MergeLanelet2, LinksEndsOfLaneletsThatHadOneId) {
+  const Merged merged = merge({{lanelet_at(0, 1), "a.osm"}, {lanelet_at(50.03, 1), "b.osm"}});
+  const RoadMap road_map = parse_map(merged.bytes, "merged.osm");
+  ASSERT_EQ(road_map.lanes().size(), 2u);
+  EXPECT_EQ(road_map.graph().of(LaneId{0}).successors, std::vector<LaneId>{LaneId{1}});
+  ASSERT_EQ(merged.seams.size(), 1u);
+  EXPECT_EQ(merged.seams[0].what, "linked");
+  EXPECT_EQ(merged.seams[0].first, "end of lanelet " + road_map.lanes()[0].name);
+  EXPECT_EQ(merged.seams[0].second, "start of lanelet " + road_map.lanes()[1].name);
+}
+
 TEST(MergeLanelet2, JoinsNoEndsAtOtherHeights) {
   const Merged merged = merge({{lanelet_at(0, 1, 0), "a.osm"}, {lanelet_at(50, 2, 8), "b.osm"}});
   EXPECT_TRUE(merged.seams.empty());
