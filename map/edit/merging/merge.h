@@ -25,8 +25,8 @@ struct Renamed {
 /// Where parts of different maps meet.
 struct Seam {
   std::string first, second;  ///< "end of road 5", "start of road 12"
-  double gap_m = 0.0;         ///< between the places that meet
-  std::string what;           ///< "joined", "linked", or why not
+  double gap_m = 0.0;         ///< between the places that meet: of lanes linked, the greatest
+  std::string what;           ///< "joined", "linked", "linked but for lanes …", or why not
   double x_m = 0.0, y_m = 0.0;
 };
 

@@ -108,8 +108,9 @@ class Merger {
     result.count("connections of junctions that lead nowhere", settled.connections);
     result.seams.insert(result.seams.end(), seams_.begin(), seams_.end());
     link_coinciding_ends(root_, origins_, options_.tolerance_m, result.seams);
-    const auto linked = std::count_if(result.seams.begin(), result.seams.end(),
-                                      [](const Seam& seam) { return seam.what == "linked"; });
+    const auto linked =
+        std::count_if(result.seams.begin(), result.seams.end(),
+                      [](const Seam& seam) { return seam.what.starts_with("linked"); });
     result.count("ends of roads linked", static_cast<std::size_t>(linked));
   }
 

@@ -83,6 +83,101 @@ TEST(Merge, LinksEndsThatCoincide) {
   EXPECT_EQ(road_map.graph().of(LaneId{0}).successors, std::vector<LaneId>{LaneId{1}});
 }
 
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+std::string at_height(double z_m, const std::string& road) {
+  return with(road, "<lanes>",
+              fmt::format("<elevationProfile><elevation s=\"0\" a=\"{}\" b=\"0\" c=\"0\" "
+                          "d=\"0\"/></elevationProfile><lanes>",
+                          z_m));
+}
+
+// A second lane to the right, 3 m wide.
+std::string with_lane(const std::string& road, const std::string& type) {
+  return with(road, "</right>",
+              "<lane id=\"-2\" type=\"" + type +
+                  "\"><width sOffset=\"0\" a=\"3\" b=\"0\" c=\"0\" d=\"0\"/></lane></right>");
+}
+
+std::size_t links_in(const std::string& bytes) {
+  std::size_t links = 0;
+  const RoadMap road_map = parse_map(bytes, "merged.xodr");
+  for (const Lane& lane : road_map.lanes()) {
+    links += road_map.graph().of(lane.id).successors.size();
+  }
+  return links;
+}
+
+TEST(Merge, LinksNoRoadsAtOtherHeights) {
+  const Merged merged = merge({{road_at(0, 0), "a.xodr"}, {at_height(8, road_at(100, 0)), "b"}});
+  ASSERT_EQ(merged.seams.size(), 1u);
+  EXPECT_EQ(merged.seams[0].what, "heights do not meet");
+  EXPECT_NEAR(merged.seams[0].gap_m, 8.0, 1e-9);
+  EXPECT_EQ(links_in(merged.bytes), 0u);
+  EXPECT_EQ(merged.bytes.find("contactPoint"), std::string::npos);
+}
+
+TEST(Merge, LinksRoadsUnderABridgeThatBeginsThere) {
+  const Merged merged = merge({{road_at(0, 0), "a.xodr"},
+                               {at_height(8, road_at(100, 0)), "bridge.xodr"},
+                               {road_at(100, 0), "b.xodr"}});
+  ASSERT_GE(merged.seams.size(), 2u);
+  EXPECT_EQ(merged.seams[0].second, "start of road 2");
+  EXPECT_EQ(merged.seams[0].what, "heights do not meet");
+  EXPECT_EQ(merged.seams[1].second, "start of road 3");
+  EXPECT_EQ(merged.seams[1].what, "linked");
+  EXPECT_EQ(links_in(merged.bytes), 1u);
+}
+
+TEST(Merge, SaysHowFarLinkedRoadsAreApartInSpace) {
+  const Merged merged =
+      merge({{road_at(0, 0), "a.xodr"}, {at_height(0.02, road_at(100.03, 0)), "b.xodr"}});
+  ASSERT_EQ(merged.seams.size(), 1u);
+  EXPECT_EQ(merged.seams[0].what, "linked");
+  EXPECT_NEAR(merged.seams[0].gap_m, std::hypot(0.03, 0.02), 1e-9);
+}
+
+TEST(Merge, LinksNoLanesOfOtherTypes) {
+  const std::string walk = with(road_at(100, 0), "type=\"driving\"", "type=\"sidewalk\"");
+  const Merged merged = merge({{road_at(0, 0), "a.xodr"}, {walk, "b.xodr"}});
+  ASSERT_EQ(merged.seams.size(), 1u);
+  EXPECT_EQ(merged.seams[0].what, "lanes are of other types");
+  EXPECT_EQ(links_in(merged.bytes), 0u);
+}
+
+TEST(Merge, LinksNoLanesThatAnOffsetPutsAside) {
+  const std::string aside = with(road_at(100, 0), "<lanes>",
+                                 "<lanes><laneOffset s=\"0\" a=\"3\" b=\"0\" c=\"0\" d=\"0\"/>");
+  const Merged merged = merge({{road_at(0, 0), "a.xodr"}, {aside, "b.xodr"}});
+  ASSERT_EQ(merged.seams.size(), 1u);
+  EXPECT_EQ(merged.seams[0].what, "lanes do not meet");
+  EXPECT_NEAR(merged.seams[0].gap_m, 3.0, 1e-9);
+  EXPECT_EQ(links_in(merged.bytes), 0u);
+}
+
+TEST(Merge, LinksOnlyTheLanesThatMeet) {
+  const Merged merged = merge({{with_lane(road_at(0, 0), "driving"), "a.xodr"},
+                               {with_lane(road_at(100.02, 0), "sidewalk"), "b.xodr"}});
+  ASSERT_EQ(merged.seams.size(), 1u);
+  EXPECT_EQ(merged.seams[0].what, "linked but for lanes -2 of road 1");
+  EXPECT_NEAR(merged.seams[0].gap_m, 0.02, 1e-9);
+  EXPECT_EQ(links_in(merged.bytes), 1u);
+}
+
+// Both roads begin where they meet; lanes of the left face those of the right.
+TEST(Merge, LinksRoadsThatBeginAtOnePlace) {
+  std::string back = with(road_at(0, 0), "hdg=\"0\"", "hdg=\"3.14159265358979\"");
+  back = with(with(back, "<right>", "<left>"), "</right>", "</left>");
+  back = with(back, "id=\"-1\"", "id=\"1\"");
+  const Merged merged = merge({{road_at(0, 0), "a.xodr"}, {back, "b.xodr"}});
+  ASSERT_EQ(merged.seams.size(), 1u);
+  EXPECT_EQ(merged.seams[0].what, "linked");
+  EXPECT_EQ(merged.seams[0].second, "start of road 2");
+  EXPECT_EQ(links_in(merged.bytes), 1u);
+}
+
 TEST(Merge, LinksNothingFartherThanTheTolerance) {
   const Merged merged =
       merge({{road_at(0, 0), "a.xodr"}, {road_at(100.02, 0), "b.xodr"}}, {.tolerance_m = 0.01});
