@@ -10,6 +10,7 @@
 #include "roadbed/map/opendrive/read.h"
 #include "roadbed/map/opendrive/rules/source.h"
 #include "roadbed/map/repair/element_text.h"
+#include "roadbed/map/repair/lane_seam.h"
 #include "roadbed/map/repair/near_ends.h"
 #include "roadbed/map/repair/proposals.h"
 
@@ -58,13 +59,6 @@ const std::vector<int>& targets(const LaneRecord& lane, End end) {
   return end == End::start ? lane.predecessors : lane.successors;
 }
 
-/// One side of a seam between lane sections.
-struct SeamSide {
-  const RoadSource* road;
-  const LaneSection* section;
-  End end;
-};
-
 class OpenDriveProposer {
  public:
   OpenDriveProposer(const std::string& bytes, const std::string& name, const RepairOptions& options)
@@ -81,6 +75,7 @@ class OpenDriveProposer {
       set_length(road);
       close_gaps(road);
       return_lane_links(road);
+      link_sections(road);
       for (const End end : {End::start, End::end}) mend_link(road, end);
       give_types(road);
     }
@@ -192,6 +187,33 @@ class OpenDriveProposer {
             {with_lane_link(*back, there.end, lane.id)});
       }
     }
+  }
+
+  /// Lanes that go on where a section of a road ends, but do not say so.
+  void link_sections(const RoadSource& road) {
+    const auto& sections = road.record.sections;
+    for (std::size_t i = 1; i < sections.size(); ++i) {
+      if (sections[i - 1].single_side || sections[i].single_side) continue;
+      const SeamSide before{&road, &sections[i - 1], End::end};
+      const SeamSide after{&road, &sections[i], End::start};
+      const auto lanes = meeting_lanes(before, after, options_.tolerance_m);
+      // What nobody drives on is no dead end.
+      if (std::ranges::none_of(lanes, [](auto& of) { return is_drivable(of.here->type); }))
+        continue;
+      std::vector<TextEdit> edits;
+      for (const SeamLanes& of : lanes) add_links(of, before, after, edits);
+      add("link.dead-end", road.element(), sections[i].node,
+          fmt::format("its lanes of the same number and type are linked over s {} m, where their "
+                      "corners meet",
+                      sections[i].s_m),
+          std::move(edits));
+    }
+  }
+
+  void add_links(const SeamLanes& lanes, const SeamSide& here, const SeamSide& there,
+                 std::vector<TextEdit>& edits) const {
+    edits.push_back(with_lane_link(*lanes.here, here.end, lanes.there->id));
+    edits.push_back(with_lane_link(*lanes.there, there.end, lanes.here->id));
   }
 
   TextEdit with_lane_link(const LaneRecord& lane, End end, int id) const {
@@ -315,16 +337,10 @@ class OpenDriveProposer {
   void link(const FreeEnd& a, const FreeEnd& b) {
     std::vector<TextEdit> edits{with_road_link(*a.road, a.end, *b.road, b.end),
                                 with_road_link(*b.road, b.end, *a.road, a.end)};
-    const LaneSection *here = section_at(*a.road, a.end), *there = section_at(*b.road, b.end);
-    if (here == nullptr || there == nullptr) return;
-    for (const LaneRecord& lane : here->listed()) {
-      const int id = a.end == b.end ? -lane.id : lane.id;
-      const LaneRecord* next = there->find(id);
-      if (lane.id == 0 || next == nullptr || next->type != lane.type) continue;
-      if (!targets(lane, a.end).empty() || !targets(*next, b.end).empty()) continue;
-      edits.push_back(with_lane_link(lane, a.end, id));
-      edits.push_back(with_lane_link(*next, b.end, lane.id));
-    }
+    const SeamSide here{a.road, section_at(*a.road, a.end), a.end};
+    const SeamSide there{b.road, section_at(*b.road, b.end), b.end};
+    if (here.section == nullptr || there.section == nullptr) return;
+    for (const SeamLanes& of : free_lanes(here, there)) add_links(of, here, there, edits);
     const double moved_m = close_ends(a, b, edits);
     add("link.dead-end", a.road->element(), a.road->record.node,
         fmt::format("its {} is now road {}, whose {} is there; lanes of the same number and type "

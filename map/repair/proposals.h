@@ -10,9 +10,10 @@
 
 namespace roadbed::map::inline repair {
 
-/// Links that only one side names, among lanes of sections and roads that follow each other; the
-/// other end of a linked road, where that is the one that meets; lengths and stations of curves,
-/// and curves of no length; curves that start beside the end of the one before.
+/// Links that only one side names, among lanes of sections and roads that follow each other; links
+/// of lanes and roads whose ends coincide; the other end of a linked road, where that is the one
+/// that meets; lengths and stations of curves, and curves of no length; curves that start beside
+/// the end of the one before.
 /// @throws InputError if the file is no XML.
 std::vector<Repair> propose_open_drive(const std::string& bytes, const std::string& name,
                                        const RepairOptions& options);
