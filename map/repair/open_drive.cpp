@@ -36,6 +36,14 @@ const std::optional<RoadLink>& link_of(const RoadSource& road, End end) {
   return end == End::start ? road.record.predecessor : road.record.successor;
 }
 
+/// Of a road's reference line, in its own direction.
+std::optional<geometry::Pose2> line_end(const RoadSource& road, End end) {
+  if (road.geometry.empty()) return {};
+  const auto& point = end == End::start ? road.geometry.front().start : road.geometry.back().end;
+  if (!point) return {};
+  return point->pose;
+}
+
 /// Where a road ends, and in which direction one leaves it there.
 struct Exit {
   Vector2d at;
@@ -43,16 +51,22 @@ struct Exit {
 };
 
 std::optional<Exit> exit_at(const RoadSource& road, End end) {
-  if (road.geometry.empty()) return {};
-  const auto& point = end == End::start ? road.geometry.front().start : road.geometry.back().end;
-  if (!point) return {};
+  const auto pose = line_end(road, end);
+  if (!pose) return {};
   const double turn_rad = end == End::start ? std::numbers::pi : 0.0;
-  return Exit{point->pose.position(), point->pose.heading_rad + turn_rad};
+  return Exit{pose->position(), pose->heading_rad + turn_rad};
 }
 
 const LaneSection* section_at(const RoadSource& road, End end) {
   if (road.record.sections.empty()) return nullptr;
   return end == End::start ? &road.record.sections.front() : &road.record.sections.back();
+}
+
+std::optional<SeamSide> seam_at(const RoadSource& road, End end) {
+  const LaneSection* section = section_at(road, end);
+  const auto pose = line_end(road, end);
+  if (section == nullptr || !pose) return {};
+  return SeamSide{&road, section, end, *pose};
 }
 
 const std::vector<int>& targets(const LaneRecord& lane, End end) {
@@ -272,11 +286,25 @@ class OpenDriveProposer {
           {text_of(bytes_, link->node)
                .with_attribute("contactPoint", end_name(other(*link->contact)))});
     } else if (apart_m && *apart_m <= options_.tolerance_m && !link_of(*to, *link->contact)) {
-      add("link.road-one-sided", to->element(), to->record.node,
-          fmt::format("its {} is now road {}, which names it", link_name(*link->contact),
-                      road.record.id),
-          {with_road_link(*to, *link->contact, road, end)});
+      return_road_link(road, end, *to, *link->contact);
     }
+  }
+
+  /// With the links of lanes that go on there: roads linked without them are another fault.
+  void return_road_link(const RoadSource& road, End end, const RoadSource& to, End contact) {
+    std::vector<TextEdit> edits{with_road_link(to, contact, road, end)};
+    const auto here = seam_at(road, end), there = seam_at(to, contact);
+    if (here && there) {
+      for (const SeamLanes& of : meeting_lanes(*here, *there, options_.tolerance_m)) {
+        add_links(of, *here, *there, edits);
+      }
+    }
+    const bool has_lanes = edits.size() > 1;
+    add("link.road-one-sided", to.element(), to.record.node,
+        fmt::format(
+            "its {} is now road {}, which names it{}", link_name(contact), road.record.id,
+            has_lanes ? "; lanes of the same number and type whose corners meet are linked" : ""),
+        std::move(edits));
   }
 
   void give_types(const RoadSource& road) {
@@ -337,10 +365,9 @@ class OpenDriveProposer {
   void link(const FreeEnd& a, const FreeEnd& b) {
     std::vector<TextEdit> edits{with_road_link(*a.road, a.end, *b.road, b.end),
                                 with_road_link(*b.road, b.end, *a.road, a.end)};
-    const SeamSide here{a.road, section_at(*a.road, a.end), a.end};
-    const SeamSide there{b.road, section_at(*b.road, b.end), b.end};
-    if (here.section == nullptr || there.section == nullptr) return;
-    for (const SeamLanes& of : free_lanes(here, there)) add_links(of, here, there, edits);
+    const auto here = seam_at(*a.road, a.end), there = seam_at(*b.road, b.end);
+    if (!here || !there) return;
+    for (const SeamLanes& of : free_lanes(*here, *there)) add_links(of, *here, *there, edits);
     const double moved_m = close_ends(a, b, edits);
     add("link.dead-end", a.road->element(), a.road->record.node,
         fmt::format("its {} is now road {}, whose {} is there; lanes of the same number and type "

@@ -111,5 +111,38 @@ TEST(RepairOpenDrive, LinksNoLaneOverASectionsEndThatALinkHasAlready) {
   EXPECT_THAT(lane_links(file.bytes), ElementsAre("1/0/-1 1/1/-2"));
 }
 
+const char* const kToRoad2 =
+    R"(<link><successor elementType="road" elementId="2" contactPoint="start"/></link>)";
+
+TEST(RepairOpenDrive, ReturnsARoadsLinkWithThoseOfItsLanes) {
+  const std::string lanes = lane_section(0, {{1, 3.0}, {-1, 3.0}});
+  const RepairedFile file = expect_better(
+      open_drive(straight_road(1, 0.0, kToRoad2, lanes) + straight_road(2, 60.0, "", lanes)));
+  ASSERT_EQ(file.repairs.size(), 1u);
+  EXPECT_EQ(file.repairs[0].rule, "link.road-one-sided");
+  EXPECT_EQ(file.after.warnings, 0u);
+  EXPECT_THAT(lane_links(file.bytes), ElementsAre("1/0/-1 2/0/-1", "2/0/1 1/0/1"));
+}
+
+// Of the second road, whose lane 1 is half as wide and which has no lane 2.
+TEST(RepairOpenDrive, ReturnsARoadsLinkWithThoseLanesOnlyWhoseCornersMeet) {
+  const std::string first = lane_section(0, {{1, 3.0}, {2, 2.0}, {-1, 3.0}});
+  const std::string second = lane_section(0, {{1, 1.5}, {-1, 3.0}});
+  const RepairedFile file = expect_better(
+      open_drive(straight_road(1, 0.0, kToRoad2, first) + straight_road(2, 60.0, "", second)));
+  EXPECT_THAT(lane_links(file.bytes), ElementsAre("1/0/-1 2/0/-1"));
+}
+
+// The second road runs towards the first one, so that their ends meet.
+TEST(RepairOpenDrive, ReturnsARoadsLinkWithLanesOfRoadsThatRunTowardsEachOther) {
+  std::string first = straight_road(1, 0.0, kToRoad2, lane_section(0, {{1, 2.5}, {-1, 3.0}}));
+  first.replace(first.find("\"start\""), 7, "\"end\"");
+  std::string second = straight_road(2, 120.0, "", lane_section(0, {{1, 3.0}, {-1, 2.5}}));
+  second.replace(second.find("hdg=\"0\""), 7, fmt::format("hdg=\"{}\"", M_PI));
+  const RepairedFile file = expect_better(open_drive(first + second));
+  ASSERT_EQ(file.repairs.size(), 1u);
+  EXPECT_THAT(lane_links(file.bytes), ElementsAre("1/0/-1 2/0/1", "2/0/-1 1/0/1"));
+}
+
 }  // namespace
 }  // namespace roadbed::map
