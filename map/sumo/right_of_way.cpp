@@ -15,11 +15,21 @@ namespace {
 constexpr double kLeft_rad = 5.0 * geometry::kRadiansPerDegree;
 constexpr double kStraight_rad = 20.0 * geometry::kRadiansPerDegree;
 constexpr double kOncoming_rad = 120.0 * geometry::kRadiansPerDegree;
+constexpr double kTouch_m = 0.1;  // lanes that overlap by no more lie side by side
 
-double heading_rad(const RoadMap& road_map, DirectedLane way, bool at_end) {
+// At a share of the way, of which an edge may have but a part.
+double heading_rad(const RoadMap& road_map, DirectedLane way, double share) {
   const Lane& lane = road_map.lane(way.lane);
-  const double s_m = at_end != way.against ? lane.length_m() : 0.0;
+  const double s_m = (way.against ? 1.0 - share : share) * lane.length_m();
   return lane.pose_at(s_m).heading_rad + (way.against ? std::numbers::pi : 0.0);
+}
+
+double heading_before_rad(const RoadMap& road_map, const Net& net, const NetConnection& one) {
+  return heading_rad(road_map, net.from_lane(one), net.edges[one.from].to_share);
+}
+
+double heading_after_rad(const RoadMap& road_map, const Net& net, const NetConnection& one) {
+  return heading_rad(road_map, net.to_lane(one), net.edges[one.to].from_share);
 }
 
 // Connections by the lanes that they leave or lie on.
@@ -136,10 +146,10 @@ class CrossingTurns {
     const NetConnection& one = net_.connections[first.second];
     const NetConnection& other = net_.connections[then.second];
     if (one.from == other.from || one.to == other.to) return;
-    const double between_rad =
-        std::abs(geometry::wrap_angle(heading_rad(road_map_, net_.from_lane(one), true) -
-                                      heading_rad(road_map_, net_.from_lane(other), true)));
-    const bool both_cross = first.first > kLeft_rad && then.first > kLeft_rad;
+    const double between_rad = std::abs(geometry::wrap_angle(
+        heading_before_rad(road_map_, net_, one) - heading_before_rad(road_map_, net_, other)));
+    if (then.first <= kLeft_rad) return;  // neither turns across
+    const bool both_cross = first.first > kLeft_rad;
     if (!both_cross && between_rad < kOncoming_rad) return;
     if (found.contains({one.from, one.to, other.from, other.to}) ||
         found.contains({other.from, other.to, one.from, one.to})) {
@@ -147,7 +157,7 @@ class CrossingTurns {
     }
     const double width_m = mean_width_m(road_map_.lane(net_.to_lane(one).lane)) +
                            mean_width_m(road_map_.lane(net_.to_lane(other).lane));
-    if (apart_m(path(one), path(other)) > 0.5 * width_m) return;
+    if (apart_m(path(one), path(other)) > 0.5 * width_m - kTouch_m) return;
     found.insert({one.from, one.to, other.from, other.to});
   }
 
@@ -155,7 +165,7 @@ class CrossingTurns {
     std::vector<Eigen::Vector2d> points;
     for (const Eigen::Vector3d& point : lines_.of(connection)) points.push_back(point.head<2>());
     if (points.size() < 2) points.push_back(points.front());
-    return geometry::Polyline(geometry::simplify(points, 0.1));
+    return geometry::Polyline(geometry::simplify(points, 0.2 * kTouch_m));
   }
 
   const RoadMap& road_map_;
@@ -167,8 +177,8 @@ class CrossingTurns {
 }  // namespace
 
 double turn_rad(const RoadMap& road_map, const Net& net, const NetConnection& connection) {
-  return geometry::wrap_angle(heading_rad(road_map, net.to_lane(connection), false) -
-                              heading_rad(road_map, net.from_lane(connection), true));
+  return geometry::wrap_angle(heading_after_rad(road_map, net, connection) -
+                              heading_before_rad(road_map, net, connection));
 }
 
 std::vector<Prohibition> find_prohibitions(const RoadMap& road_map, const Net& net,
