@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "roadbed/geometry/primitives/disjoint_sets.h"
+#include "roadbed/map/derived/lane_relations.h"
 #include "roadbed/map/sumo/inner_lanes.h"
 #include "roadbed/map/sumo/lane_lines.h"
 #include "roadbed/map/sumo/net.h"
@@ -20,7 +21,8 @@ class NetBuilder {
   NetBuilder(const RoadMap& road_map, const DirectedLanes& ways,
              const std::vector<Conflict>& conflicts)
       : road_map_(road_map), inner_(find_inner_lanes(road_map, ways, conflicts)) {
-    net_.edges = make_edges(road_map, ways, inner_);
+    net_.left_hand = drives_on_the_left(road_map);
+    net_.edges = make_edges(road_map, ways, inner_, net_.left_hand);
     net_.connections = make_connections(road_map, ways, inner_, net_.edges);
   }
 

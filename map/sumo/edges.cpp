@@ -22,8 +22,8 @@ enum class Part { whole, first_metre, last_metre, none };
 class EdgeMaker {
  public:
   EdgeMaker(const RoadMap& road_map, const DirectedLanes& ways,
-            const std::vector<std::optional<std::uint32_t>>& inner)
-      : road_map_(road_map), ways_(ways), inner_(inner) {}
+            const std::vector<std::optional<std::uint32_t>>& inner, bool left_hand)
+      : road_map_(road_map), ways_(ways), inner_(inner), left_hand_(left_hand) {}
 
   std::vector<NetEdge> make() {
     for (const Part part : {Part::whole, Part::first_metre, Part::last_metre}) add_all(part);
@@ -39,7 +39,7 @@ class EdgeMaker {
       std::erase_if(group, [&](LaneId id) { return is_done[id.index] || !has(id, part); });
       for (const LaneId id : group) is_done[id.index] = true;
       add(group, false, part);
-      add({group.rbegin(), group.rend()}, true, part);
+      add(group, true, part);
     }
   }
 
@@ -85,7 +85,10 @@ class EdgeMaker {
     return link->lane;
   }
 
-  void add(const std::vector<LaneId>& group, bool against, Part part) {
+  // An edge of a group from right to left. Who drives against it has its left to the right, and
+  // left is the kerb in left-hand traffic.
+  void add(std::vector<LaneId> group, bool against, Part part) {
+    if (against != left_hand_) std::reverse(group.begin(), group.end());
     NetEdge edge;
     for (const LaneId id : group) {
       if (part_of({id, against}) == part) edge.lanes.push_back({id, against});
@@ -99,7 +102,7 @@ class EdgeMaker {
   }
 
   // OpenDRIVE: "12", "12/0" where the road has several sections; "-" before what drives against s.
-  // Else the name of the rightmost lane; "-" before one that is driven against its direction.
+  // Else the name of the lane at the kerb; "-" before one that is driven against its direction.
   std::string name(DirectedLane way) const {
     const Lane& lane = road_map_.lane(way.lane);
     if (!lane.road) return (way.against ? "-" : "") + lane.name;
@@ -115,6 +118,7 @@ class EdgeMaker {
   const RoadMap& road_map_;
   const DirectedLanes& ways_;
   const std::vector<std::optional<std::uint32_t>>& inner_;
+  bool left_hand_;
   std::vector<NetEdge> edges_;
   NetIds ids_;
 };
@@ -136,8 +140,9 @@ std::string NetIds::give(std::string_view wanted) {
 }
 
 std::vector<NetEdge> make_edges(const RoadMap& road_map, const DirectedLanes& ways,
-                                const std::vector<std::optional<std::uint32_t>>& inner) {
-  return EdgeMaker(road_map, ways, inner).make();
+                                const std::vector<std::optional<std::uint32_t>>& inner,
+                                bool left_hand) {
+  return EdgeMaker(road_map, ways, inner, left_hand).make();
 }
 
 }  // namespace roadbed::map::sumo

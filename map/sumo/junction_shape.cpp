@@ -49,8 +49,8 @@ std::vector<geometry::Ring> junction_shapes(const RoadMap& road_map, const Net& 
     const double length_m = road_map.lane(edge.lanes.front().lane).length_m();
     const double inset = std::min(kInset_m / length_m, 0.1 * (edge.to_share - edge.from_share));
     const auto add = [&](std::uint32_t node, double share, bool is_entry) {
-      ends[node].push_back({border_point(road_map, edge.lanes.back(), true, share),
-                            border_point(road_map, edge.lanes.front(), false, share), is_entry});
+      ends[node].push_back({border_point(road_map, net.leftmost(edge), true, share),
+                            border_point(road_map, net.rightmost(edge), false, share), is_entry});
     };
     add(edge.from, edge.from_share + inset, false);
     add(edge.to, edge.to_share - inset, true);

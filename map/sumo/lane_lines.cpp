@@ -13,9 +13,9 @@ constexpr double kNear_m = 0.01;  // points of a connection that are nearer to e
 Points line_of(const RoadMap& road_map, DirectedLane way, LineOf which, double from_share,
                double to_share) {
   const Lane& lane = road_map.lane(way.lane);
-  const LaneLine& line = which == LineOf::centre ? lane.centre
-                         : way.against           ? lane.right
-                                                 : lane.left;
+  const LaneLine& line = which == LineOf::centre                  ? lane.centre
+                         : (which == LineOf::left) != way.against ? lane.left
+                                                                  : lane.right;
   Points points;
   std::vector<double> along_m = line.station_m;
   for (std::size_t i = 0; i < along_m.size(); ++i) {

@@ -9,7 +9,7 @@ namespace roadbed::map::sumo {
 using Points = std::vector<Eigen::Vector3d>;  ///< [m], in the map's coordinates
 
 /// Which line of a lane, as its driver sees it.
-enum class LineOf { left, centre };
+enum class LineOf { left, centre, right };
 
 /// A lane's line in the direction in which it is driven, from one share of its length to another.
 Points line_of(const RoadMap& road_map, DirectedLane way, LineOf line, double from_share = 0.0,

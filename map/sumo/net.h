@@ -20,7 +20,9 @@ struct NetNode {
   bool is_zipper = false;           ///< two lanes of an edge end in one of the next
 };
 
-/// Lanes side by side that are driven the same way, from right to left: lanes[i] has index i.
+/// Lanes side by side that are driven the same way, from the kerb to the middle of the road, as
+/// SUMO counts them: from right to left, in left-hand traffic from left to right. lanes[i] has
+/// index i.
 struct NetEdge {
   std::string id;
   std::vector<DirectedLane> lanes;
@@ -42,12 +44,19 @@ struct Net {
   std::vector<NetNode> nodes;
   std::vector<NetEdge> edges;
   std::vector<NetConnection> connections;  ///< by edge and lane that they leave
+  bool left_hand = false;                  ///< traffic
 
   DirectedLane from_lane(const NetConnection& connection) const {
     return edges[connection.from].lanes[connection.from_lane];
   }
   DirectedLane to_lane(const NetConnection& connection) const {
     return edges[connection.to].lanes[connection.to_lane];
+  }
+  DirectedLane leftmost(const NetEdge& edge) const {
+    return left_hand ? edge.lanes.front() : edge.lanes.back();
+  }
+  DirectedLane rightmost(const NetEdge& edge) const {
+    return left_hand ? edge.lanes.back() : edge.lanes.front();
   }
 };
 
@@ -58,8 +67,10 @@ Net build_net(const RoadMap& road_map, const DirectedLanes& ways,
 /// Edges, without nodes: of lanes that are not inside a junction; and of those inside that lead
 /// from or to nowhere, as at the rim of a map, the first or last metre.
 /// @param inner  by LaneId, see find_inner_lanes().
+/// @param left_hand  whether traffic is: on which side the lanes begin to count.
 std::vector<NetEdge> make_edges(const RoadMap& road_map, const DirectedLanes& ways,
-                                const std::vector<std::optional<std::uint32_t>>& inner);
+                                const std::vector<std::optional<std::uint32_t>>& inner,
+                                bool left_hand);
 
 /// The shortest way inside the junction from each lane of an edge to each lane that it leads to,
 /// with lane changes where the map allows them.

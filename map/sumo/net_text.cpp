@@ -59,9 +59,9 @@ double turn_at(const Points& points, std::size_t at) {
                               std::atan2(before.y(), before.x()));
 }
 
-// An edge's own line is its left border, in steps that netconvert does not take for one point, and
-// without what turns back. It looks for sharp turns between the first two steps and the last two:
-// these go straight on.
+// An edge's own line is its border amid the road, in steps that netconvert does not take for one
+// point, and without what turns back. It looks for sharp turns between the first two steps and the
+// last two: these go straight on.
 Points edge_line(const Points& border) {
   std::vector<Eigen::Vector2d> plan;
   for (const Eigen::Vector3d& point : border) plan.push_back(point.head<2>());
@@ -114,8 +114,9 @@ bool keeps_ends(const LaneLines& lines, const NetConnection& connection,
          cut_off_m(lines.of(connection.to, connection.to_lane), ring) < least_m;
 }
 
-void add_lane(const RoadMap& road_map, const NetEdge& edge, std::size_t index, bool leads_on,
-              const Points& points, std::string& text) {
+// SUMO's changeLeft is to the lane of the next index, on whichever side that is.
+void add_lane(const RoadMap& road_map, const Net& net, const NetEdge& edge, std::size_t index,
+              bool leads_on, const Points& points, std::string& text) {
   const DirectedLane way = edge.lanes[index];
   const Lane& lane = road_map.lane(way.lane);
   Participants users = users_of(lane);
@@ -123,10 +124,11 @@ void add_lane(const RoadMap& road_map, const NetEdge& edge, std::size_t index, b
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "<lane index=\"{}\" allow=\"{}\" speed=\"{}\" width=\"{}\"", index,
                  vehicle_classes(users), number(speed_mps(lane)), number(mean_width_m(lane)));
-  for (const bool to_left : {true, false}) {
-    if (!leads_on || (to_left ? index + 1 == edge.lanes.size() : index == 0)) continue;
-    if (may_change(road_map, way, edge.lanes[to_left ? index + 1 : index - 1], to_left)) continue;
-    fmt::format_to(out, " change{}=\"{}\"", to_left ? "Left" : "Right", kNobodyElse);
+  for (const bool to_next : {true, false}) {
+    if (!leads_on || (to_next ? index + 1 == edge.lanes.size() : index == 0)) continue;
+    const DirectedLane beside = edge.lanes[to_next ? index + 1 : index - 1];
+    if (may_change(road_map, way, beside, to_next != net.left_hand)) continue;
+    fmt::format_to(out, " change{}=\"{}\"", to_next ? "Left" : "Right", kNobodyElse);
   }
   fmt::format_to(out, " shape=\"{}\"><param key=\"origId\" value=\"{}\"/>{}</lane>\n",
                  shape_text(road_map, points), xml_text(lane.name),
@@ -181,6 +183,7 @@ std::string edges_text(const RoadMap& road_map, const Net& net, const LaneLines&
   for (const NetConnection& connection : net.connections) {
     leading.emplace(connection.from, connection.from_lane);
   }
+  const LineOf middle = net.left_hand ? LineOf::right : LineOf::left;
   std::string text = "<edges>\n";
   for (std::uint32_t i = 0; i < net.edges.size(); ++i) {
     const NetEdge& edge = net.edges[i];
@@ -196,10 +199,10 @@ std::string edges_text(const RoadMap& road_map, const Net& net, const LaneLines&
     if (!name.empty()) fmt::format_to(out, " name=\"{}\"", xml_text(name));
     fmt::format_to(out, " priority=\"1\" numLanes=\"{}\" speed=\"{}\" shape=\"{}\">\n",
                    edge.lanes.size(), number(speed),
-                   shape_text(road_map, edge_line(line_of(road_map, edge.lanes.back(), LineOf::left,
+                   shape_text(road_map, edge_line(line_of(road_map, edge.lanes.back(), middle,
                                                           edge.from_share, edge.to_share))));
     for (std::uint32_t lane = 0; lane < edge.lanes.size(); ++lane) {
-      add_lane(road_map, edge, lane, leading.contains({i, lane}), lines.of(i, lane), text);
+      add_lane(road_map, net, edge, lane, leading.contains({i, lane}), lines.of(i, lane), text);
     }
     text += "</edge>\n";
   }

@@ -7,7 +7,6 @@
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/geometry/primitives/cross.h"
 #include "roadbed/geometry/primitives/segment.h"
-#include "roadbed/map/derived/lane_relations.h"
 
 namespace roadbed::map::sumo {
 namespace {
@@ -123,7 +122,7 @@ class CrossingTurns {
  public:
   CrossingTurns(const RoadMap& road_map, const Net& net, const LaneLines& lines)
       : road_map_(road_map), net_(net), lines_(lines) {
-    if (drives_on_the_left(road_map)) side_ = -1.0;
+    if (net.left_hand) side_ = -1.0;
   }
 
   // Who turns less goes first, of equal ones that of the first edge.

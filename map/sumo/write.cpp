@@ -8,7 +8,6 @@
 
 #include "roadbed/map/derived/conflicts.h"
 #include "roadbed/map/derived/crossings.h"
-#include "roadbed/map/derived/lane_relations.h"
 #include "roadbed/map/files/projection.h"
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/sumo/lane_users.h"
@@ -155,7 +154,7 @@ SumoFiles write_sumo(const RoadMap& road_map, const SumoOptions& options) {
   files.edges = kDeclaration + edges_text(road_map, net, lines);
   files.connections = kDeclaration + connections_text(road_map, net, lines, lights, prohibitions);
   files.traffic_lights = kDeclaration + traffic_lights_text(road_map, net, lights);
-  files.configuration = configuration_text(options.name, drives_on_the_left(road_map));
+  files.configuration = configuration_text(options.name, net.left_hand);
   files.lost = LossCounter(road_map, ways, net, lights).count();
   if (options.offset_in_crs.heading_rad != 0.0) {
     files.notes.emplace_back(

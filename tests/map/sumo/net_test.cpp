@@ -16,6 +16,7 @@
 #include "roadbed/map/sumo/lane_lines.h"
 #include "roadbed/map/sumo/lane_users.h"
 #include "roadbed/tests/support/made_lanelet2.h"
+#include "roadbed/tests/support/made_road.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map::sumo {
@@ -148,6 +149,24 @@ TEST(SumoNet, LanesOfAnEdgeLieFromRightToLeft) {
     }
   }
   EXPECT_GT(pairs, 20);
+}
+
+TEST(SumoNet, LanesOfAnEdgeCountFromTheLeftInLeftHandTraffic) {
+  tests::MadeRoad road;
+  road.attributes = R"(rule="LHT")";
+  road.lanes = tests::made_section(0.0, tests::made_lane(2) + tests::made_lane(1),
+                                   tests::made_lane(-1) + tests::made_lane(-2));
+  const Made made(tests::made_map(tests::made_road(road)));
+  EXPECT_TRUE(made.net.left_hand);
+  ASSERT_EQ(made.net.edges.size(), 2u);
+  for (const NetEdge& edge : made.net.edges) {
+    ASSERT_EQ(edge.lanes.size(), 2u);
+    const Lane& kerb = made.road_map.lane(edge.lanes[0].lane);
+    const Lane& middle = made.road_map.lane(edge.lanes[1].lane);
+    EXPECT_NEAR(kerb.centre.in_map.project(middle.pose_at(50.0).position()).d_m, -3.5, 1e-9);
+    EXPECT_EQ(made.net.leftmost(edge), edge.lanes[0]);
+    EXPECT_EQ(made.net.rightmost(edge), edge.lanes[1]);
+  }
 }
 
 TEST(SumoNet, IdsAreTheirOwnAndOfLettersThatSumoTakes) {

@@ -11,6 +11,7 @@
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/sumo/traffic_lights.h"
+#include "roadbed/tests/support/mirrored_map.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map::sumo {
@@ -81,6 +82,54 @@ TEST(WriteSumo, NoTwoLinksThatMeetAreGreenWithoutOneOfThemWaiting) {
       for (std::size_t link = 0; link < now.size(); ++link) {
         EXPECT_FALSE((now[link] == 'G' || now[link] == 'g') && next[link] == 'r') << "no yellow";
       }
+    }
+  }
+}
+
+// The map in a mirror. On which side of the reference line lanes lie is in their ids.
+RoadMap mirror_image(const RoadMap& road_map) {
+  RoadMapParts parts = road_map.parts();
+  for (Lane& lane : parts.lanes) {
+    std::string& id = lane.origin.source_id;
+    if (lane.road) id = id.starts_with('-') ? id.substr(1) : "-" + id;
+  }
+  return tests::mirrored(std::move(parts));
+}
+
+std::string without_shapes(std::string text) {
+  const std::string name = " shape=\"";
+  for (std::size_t at = 0; (at = text.find(name, at)) != std::string::npos;) {
+    text.erase(at, text.find('"', at + name.size()) + 1 - at);
+  }
+  return text;
+}
+
+Eigen::Vector2d first_point(const RoadMap& road_map, pugi::xml_node node) {
+  double x = 0.0, y = 0.0;
+  EXPECT_EQ(std::sscanf(std::string(node.attribute("shape").value()).c_str(), "%lf,%lf", &x, &y),
+            2);
+  return road_map.to_map({x, y});
+}
+
+// In a mirror SUMO's lanes have the same indices: in left-hand traffic 0 is the leftmost.
+TEST(WriteSumo, LeftHandTrafficIsRightHandTrafficInAMirror) {
+  for (const char* name : {"town.xodr", "crossing.osm", "motorway.xodr"}) {
+    const RoadMap road_map = load_map(tests::data_folder() / name);
+    const RoadMap mirror = mirror_image(road_map);
+    const SumoFiles plain = write_sumo(road_map, {"a", "", {}});
+    const SumoFiles mirrored = write_sumo(mirror, {"a", "", {}});
+    EXPECT_EQ(plain.configuration.find("lefthand"), std::string::npos);
+    EXPECT_NE(mirrored.configuration.find("<lefthand value=\"true\"/>"), std::string::npos);
+    EXPECT_EQ(without_shapes(mirrored.edges), without_shapes(plain.edges));
+    EXPECT_EQ(without_shapes(mirrored.connections), without_shapes(plain.connections));
+    EXPECT_EQ(mirrored.traffic_lights, plain.traffic_lights);
+    const XmlDocument one(plain.edges, "edges"), other(mirrored.edges, "edges");
+    pugi::xml_node image = other.root().child("edge");
+    for (const pugi::xml_node edge : one.root().children("edge")) {
+      const Eigen::Vector2d at = first_point(road_map, edge);
+      const Eigen::Vector2d seen = first_point(mirror, image);
+      EXPECT_NEAR((Eigen::Vector2d(seen.x(), -seen.y()) - at).norm(), 0.0, 2e-3);
+      image = image.next_sibling("edge");
     }
   }
 }
