@@ -16,7 +16,7 @@ namespace roadbed::planning::inline audit {
 /// at the beginning it is on that on which it has lanes under it for the most of its way.
 ///
 /// Lanes without heights stay. O(poses × lanes near), nothing where all lanes are of one level.
-/// @param map_from_vehicle  of the drive, at most 2 m apart.
+/// @param map_from_vehicle  of the drive, at most 3 m apart.
 std::set<map::LaneId> lanes_on_level(const map::RoadMap& road_map, std::set<map::LaneId> lanes,
                                      const std::vector<geometry::Pose2>& map_from_vehicle,
                                      double within_m);

@@ -80,6 +80,17 @@ std::vector<geometry::Pose2> poses_along(const RoadMap& road_map, const geometry
   return poses;
 }
 
+// Without those that are less than so far from the one before, but the last: rows may be dense.
+std::vector<geometry::Pose2> thinned(std::vector<geometry::Pose2> poses, double least_m) {
+  std::vector<geometry::Pose2> kept;
+  for (const geometry::Pose2& pose : poses) {
+    const bool is_far =
+        kept.empty() || (pose.position() - kept.back().position()).norm() >= least_m;
+    if (is_far || &pose == &poses.back()) kept.push_back(pose);
+  }
+  return kept;
+}
+
 // Lanes whose middle runs the drive's way where its rear axle is in them; where it is in none, the
 // nearest one that does.
 Lanes lanes_driven(const RoadMap& road_map, const geometry::Trajectory& drive) {
@@ -175,9 +186,9 @@ Lanes lanes_of(const SurfaceRule& rule, const geometry::Trajectory& drive,
   const RoadMap& road_map = *rule.road_map;
   Lanes lanes = rule.kind == RuleKind::lanes ? lanes_along(road_map, drive, reach_m)
                                              : lanes_of_type(road_map, boxes, types_of(rule.kind));
-  constexpr double apart_m = 2.0, beside_m = 5.0;
-  return lanes_on_level(road_map, std::move(lanes), poses_along(road_map, drive, apart_m),
-                        reach_m + beside_m);
+  constexpr double least_m = 1.0, most_m = 2.0, beside_m = 5.0;
+  return lanes_on_level(road_map, std::move(lanes),
+                        thinned(poses_along(road_map, drive, most_m), least_m), reach_m + beside_m);
 }
 
 }  // namespace
