@@ -66,10 +66,7 @@ Attributes file_attributes(pugi::xml_node root) {
   }
   const pugi::xml_node extra =
       location.child("geoTransformation").child("additionalTransformation");
-  for (const pugi::xml_node part : extra.children()) {
-    if (part.type() != pugi::node_element) continue;
-    attributes.emplace_back(part.name(), text_of(part));
-  }
+  if (extra.child("scaling")) attributes.emplace_back("scaling", text_of(extra.child("scaling")));
   return attributes;
 }
 

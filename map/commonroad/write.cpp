@@ -117,9 +117,8 @@ class FileWriter {
           "<xTranslation>{}</xTranslation><yTranslation>{}</yTranslation>"
           "<zRotation>{}</zRotation><scaling>{}</scaling></additionalTransformation>"
           "</geoTransformation>",
-          xml_text(road_map_.crs()), file_attribute("xTranslation", decimal(offset.x_m)),
-          file_attribute("yTranslation", decimal(offset.y_m)),
-          file_attribute("zRotation", decimal(offset.heading_rad)), file_attribute("scaling", "1"));
+          xml_text(road_map_.crs()), decimal(offset.x_m), decimal(offset.y_m),
+          decimal(offset.heading_rad), file_attribute("scaling", "1"));
     }
     text_ += "</location>\n <scenarioTags/>\n";
   }

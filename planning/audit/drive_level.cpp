@@ -109,9 +109,8 @@ std::set<LaneId> lanes_on_level(const RoadMap& road_map, std::set<LaneId> lanes,
   const std::vector<double> heights_m = finder.heights_m();
   if (heights_m.empty()) return lanes;
   std::set<LaneId> on_level, off_level;
-  const map::LaneMatches near = road_map.locate(finder.points(), within_m, kAll, false);
   for (std::size_t i = 0; i < heights_m.size(); ++i) {
-    for (const LaneMatch& match : near.of(i)) {
+    for (const LaneMatch& match : road_map.locate(finder.points()[i], within_m, false)) {
       const double allowed_m = kSameLevel_m + kRise * match.distance_m;
       const bool is_off = std::abs(height_m(road_map, match) - heights_m[i]) > allowed_m;
       (is_off ? off_level : on_level).insert(match.place.lane);

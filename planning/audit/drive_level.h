@@ -15,7 +15,9 @@ namespace roadbed::planning::inline audit {
 /// as high as it was: who leaves a bridge over its edge is not on the road below. Of several levels
 /// at the beginning it is on that on which it has lanes under it for the most of its way.
 ///
-/// Lanes without heights stay. O(poses × lanes near), nothing where all lanes are of one level.
+/// Lanes without heights stay. `map::road_under` asks for more: it refuses steps between lanes, and
+/// places where it is not clear on which of several a drive begins. O(poses × lanes near), nothing
+/// where all lanes are of one level.
 /// @param map_from_vehicle  of the drive, at most 3 m apart.
 std::set<map::LaneId> lanes_on_level(const map::RoadMap& road_map, std::set<map::LaneId> lanes,
                                      const std::vector<geometry::Pose2>& map_from_vehicle,

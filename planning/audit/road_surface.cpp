@@ -81,7 +81,7 @@ std::vector<geometry::Pose2> poses_along(const RoadMap& road_map, const geometry
 }
 
 // Without those that are less than so far from the one before, but the last: rows may be dense.
-std::vector<geometry::Pose2> thinned(std::vector<geometry::Pose2> poses, double least_m) {
+std::vector<geometry::Pose2> thinned(const std::vector<geometry::Pose2>& poses, double least_m) {
   std::vector<geometry::Pose2> kept;
   for (const geometry::Pose2& pose : poses) {
     const bool is_far =

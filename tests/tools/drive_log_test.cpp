@@ -231,7 +231,7 @@ TEST_F(DriveLog, InfoSaysRatesAndGapsOfTransformsByFrame) {
   EXPECT_NEAR(topic["frames"][0]["gaps"][0]["length_s"].get<double>(), 0.5, 1e-9);
   const ProgramRun text = run_roadbed({"drive", "info", file});
   EXPECT_THAT(text.out, HasSubstr("\n  wheel in base_link: 51 transforms, 10 Hz\n"));
-  EXPECT_THAT(text.out, HasSubstr("\n  other_wheel in base_link: 47 transforms, 10 Hz, 1 gaps\n"));
+  EXPECT_THAT(text.out, HasSubstr("\n  other_wheel in base_link: 47 transforms, 10 Hz, 1 gap\n"));
 }
 
 TEST_F(DriveLog, InfoSaysTheRateOfTransformsOfOneFrameWithTheirTopic) {

@@ -8,11 +8,9 @@ namespace roadbed::tools::inline audit {
 /// The time step of CommonRoad that is second 0 of a drive: what its scenario records, obstacles
 /// and lights, is looked at in that time.
 ///
-/// | drive | second 0 |
-/// |---|---|
-/// | a CommonRoad solution | time step 0: its states keep their absolute steps |
-/// | any other, a swept one too | the initial step of the scenario's planning problem, as
-/// `simulate` writes drives; time step 0 where there is none |
+/// Of a CommonRoad solution it is time step 0: its states keep their absolute steps. Of any other
+/// drive, a swept one too, it is the initial step of the scenario's planning problem, as `simulate`
+/// writes drives; time step 0 where there is none.
 ///
 /// @param drive  its file; empty: swept.
 /// @param files  that may be the scenario: the first of CommonRoad's with a planning problem is.

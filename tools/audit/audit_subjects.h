@@ -78,9 +78,8 @@ class AuditSubjects {
 
 /// Obstacles over time, in source coordinates: of a scenario (`.json`, or CommonRoad `.xml`, see
 /// `recorded_boxes`), or boxes with time stamps (`.csv`).
-/// @param start_step  of CommonRoad, that is second 0 (`second_0_step`); none: that of the file's
-/// own
-///                    planning problem, else 0.
+/// @param start_step  of CommonRoad, that is second 0 (`second_0_step`); none: that of the planning
+///                    problem in the file itself, else 0.
 /// @throws InputError if the file, or one that it names, is unusable.
 std::vector<planning::ObstacleInSource> read_moving_obstacles(const std::filesystem::path& file,
                                                               const Inputs& inputs,

@@ -66,7 +66,7 @@ class DriveOfPoses {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (!read_.poses[i].speed_mps) rows[i].speed_mps = speed_of_way_mps(rows, i);
     }
-    if (const auto fault = read_.has_rotations ? impossible_row(rows) : implausible_row(rows)) {
+    if (const auto fault = read_.has_rotations ? impossible_step(rows) : implausible_row(rows)) {
       refuse(fault->row, "", fault->found, fault->needed, fault->remedy);
     }
     return geometry::Trajectory(std::move(rows));

@@ -89,29 +89,6 @@ double turn_rad(const TrajectoryPoint& from, const TrajectoryPoint& to) {
   return std::abs(std::remainder(turned_rad, 2.0 * std::numbers::pi));
 }
 
-std::optional<ImplausibleRow> impossible_step(const std::vector<TrajectoryPoint>& rows) {
-  constexpr double fastest_mps = 150.0, noise_m = 1.0, fastest_radps = 5.0, noise_rad = 0.5;
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    const double took_s = rows[i].t_s - rows[i - 1].t_s, way_m = step_m(rows[i - 1], rows[i]);
-    const double turned_rad = turn_rad(rows[i - 1], rows[i]);
-    if (way_m > fastest_mps * took_s + noise_m) {
-      return ImplausibleRow{i, "columns x_m, y_m",
-                            fmt::format("{:.6g} m in {:.3g} s from the row before", way_m, took_s),
-                            fmt::format("steps that a vehicle makes, under {} m/s", fastest_mps),
-                            "remove the outlier, or cut the drive there"};
-    }
-    if (turned_rad > fastest_radps * took_s + noise_rad) {
-      return ImplausibleRow{
-          i, "column heading_rad",
-          fmt::format("turns by {:.3g} rad in {:.3g} s from the row before", turned_rad, took_s),
-          fmt::format("the heading of the body in radians, which turns by less than {} rad/s",
-                      fastest_radps),
-          "give radians, and the body's heading where it backs up too"};
-    }
-  }
-  return std::nullopt;
-}
-
 /// How far headings are off the path driven, in the mean over pieces of a metre, forwards or
 /// backwards.
 class HeadingError {
@@ -237,8 +214,27 @@ std::optional<ImplausibleRow> implausible_row(const std::vector<TrajectoryPoint>
   return impossible_step(rows);
 }
 
-std::optional<ImplausibleRow> impossible_row(const std::vector<TrajectoryPoint>& rows) {
-  return impossible_step(rows);
+std::optional<ImplausibleRow> impossible_step(const std::vector<TrajectoryPoint>& rows) {
+  constexpr double fastest_mps = 150.0, noise_m = 1.0, fastest_radps = 5.0, noise_rad = 0.5;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const double took_s = rows[i].t_s - rows[i - 1].t_s, way_m = step_m(rows[i - 1], rows[i]);
+    const double turned_rad = turn_rad(rows[i - 1], rows[i]);
+    if (way_m > fastest_mps * took_s + noise_m) {
+      return ImplausibleRow{i, "columns x_m, y_m",
+                            fmt::format("{:.6g} m in {:.3g} s from the row before", way_m, took_s),
+                            fmt::format("steps that a vehicle makes, under {} m/s", fastest_mps),
+                            "remove the outlier, or cut the drive there"};
+    }
+    if (turned_rad > fastest_radps * took_s + noise_rad) {
+      return ImplausibleRow{
+          i, "column heading_rad",
+          fmt::format("turns by {:.3g} rad in {:.3g} s from the row before", turned_rad, took_s),
+          fmt::format("the heading of the body in radians, which turns by less than {} rad/s",
+                      fastest_radps),
+          "give radians, and the body's heading where it backs up too"};
+    }
+  }
+  return std::nullopt;
 }
 
 std::string curvature_note(const geometry::Trajectory& drive, const geometry::VehicleShape& shape) {

@@ -43,9 +43,8 @@ struct ImplausibleRow {
 /// @param rows  before their headings are unwrapped.
 std::optional<ImplausibleRow> implausible_row(const std::vector<geometry::TrajectoryPoint>& rows);
 
-/// What no vehicle does from one row to the next: `implausible_row` of headings in radians for
-/// sure.
-std::optional<ImplausibleRow> impossible_row(const std::vector<geometry::TrajectoryPoint>& rows);
+/// Its first part alone, where headings are in radians for sure.
+std::optional<ImplausibleRow> impossible_step(const std::vector<geometry::TrajectoryPoint>& rows);
 
 /// Where a drive turns tighter than a vehicle's steering lets it; empty where it does not. Told
 /// over a metre of path, so that noise of positions is no bend.

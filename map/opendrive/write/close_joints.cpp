@@ -30,7 +30,7 @@ BorderPlace place_of(const RoadPlan& plan, LaneId lane, bool on_left) {
 
 /// The line across an end of a road, of which t = 0 is the origin.
 struct LineAcross {
-  LineAcross(const PlacedRoad& road, bool last) {
+  LineAcross(const PlacedRoad& road, bool at_last) : last(at_last) {
     const geometry::PlanPiece& piece = last ? road.plan_view.back() : road.plan_view.front();
     const geometry::Pose2 pose =
         geometry::plan_point(piece, last ? piece.s_m + piece.length_m : piece.s_m).pose;
@@ -39,6 +39,12 @@ struct LineAcross {
     across = {-along.y(), along.x()};
   }
 
+  /// Where a border meets it.
+  Eigen::Vector2d at(const BesideLine& line) const {
+    return origin + (last ? line.back().t_m : line.front().t_m) * across;
+  }
+
+  bool last;
   Eigen::Vector2d origin, across;
 };
 
@@ -49,17 +55,14 @@ struct BorderEnd {
   LineAcross of;
   const geometry::Polyline* source;  // what the map says of it
 
-  double t_m() const { return end % 2 == 1 ? line->back().t_m : line->front().t_m; }
-  Eigen::Vector2d point() const { return of.origin + t_m() * of.across; }
+  Eigen::Vector2d point() const { return of.at(*line); }
 };
 
 Eigen::Vector2d end_point(const RoadPlan& plan, const std::vector<PlacedRoad>& placed,
                           std::uint32_t end, LaneId lane, bool on_left) {
-  const bool last = end % 2 == 1;
   const BorderPlace place = place_of(plan, lane, on_left);
-  const BesideLine& line = placed[place.road].borders[place.section][place.border];
-  const LineAcross of(placed[place.road], last);
-  return of.origin + (last ? line.back().t_m : line.front().t_m) * of.across;
+  const PlacedRoad& road = placed[place.road];
+  return LineAcross(road, end % 2 == 1).at(road.borders[place.section][place.border]);
 }
 
 class JointCloser {
@@ -155,7 +158,7 @@ class JointCloser {
 
   static void lead(const BorderEnd& end, double by_m) {
     BesideLine& line = *end.line;
-    const bool at_end = end.end % 2 == 1;
+    const bool at_end = end.of.last;
     const double end_s_m = at_end ? line.back().s_m : line.front().s_m;
     const double length_m = line.back().s_m - line.front().s_m;
     const double ramp_m =

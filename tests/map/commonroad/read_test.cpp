@@ -77,6 +77,22 @@ TEST(CommonRoad, NamesFormatAndFileAttributes) {
   EXPECT_THAT(road_map.unused(), IsEmpty());
 }
 
+/// What is no number is not there, for who writes the map again either.
+TEST(CommonRoad, WhereTheirSystemHasTheCoordinatesIsSaidOnce) {
+  const RoadMap road_map = parse(
+      "<location><geoTransformation><geoReference>EPSG:25832</geoReference>"
+      "<additionalTransformation><xTranslation>500.5</xTranslation>"
+      "<yTranslation>far</yTranslation><zRotation>0.25</zRotation><scaling>2</scaling>"
+      "</additionalTransformation></geoTransformation></location>" +
+      lanelet("1", 0, 50, 0, ""));
+  EXPECT_EQ(road_map.offset_in_crs(), (CrsOffset{.x_m = 500.5, .heading_rad = 0.25}));
+  EXPECT_THAT(rules(road_map),
+              ElementsAre("import.geo-transformation", "import.geo-transformation"));
+  for (const auto& [name, value] : road_map.attributes()) {
+    EXPECT_FALSE(name.ends_with("Translation") || name == "zRotation") << name;
+  }
+}
+
 TEST(CommonRoad, BordersAreThePointsOfTheFileAndTheCentreIsHalfway) {
   const RoadMap road_map = junction();
   ASSERT_THAT(road_map.lanes(), SizeIs(12));

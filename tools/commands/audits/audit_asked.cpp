@@ -201,22 +201,19 @@ void AuditAsked::take_road() {
 
 void AuditAsked::take_drive(const std::filesystem::path& file) {
   start_step_ = second_0_step(file, std::array{obstacles_, map_});
-  if (file.empty() || !is_solution(file)) return;
-  drives_vehicle_ = vehicle_of_solution(file);
-  is_drives_vehicle_ = vehicle_.empty();
-  if (is_drives_vehicle_) vehicle_ = drives_vehicle_;
+  if (!file.empty() && is_solution(file)) drives_vehicle_ = vehicle_of_solution(file);
 }
 
 std::string AuditAsked::vehicle_note(const Vehicle& vehicle) const {
-  if (drives_vehicle_.empty() || is_drives_vehicle_) return {};
+  if (drives_vehicle_.empty() || vehicle_.empty()) return {};
   const geometry::VehicleShape own = read_vehicle_shape(drives_vehicle_);
   const bool has_more = !vehicle.circles.empty() || !vehicle.more.empty();
   if (!has_more && is_same_body(own, vehicle.shape)) return {};
   return fmt::format(
       "note: the solution is of {}, {:.3f} m by {:.3f} m; audited is --vehicle {}, {:.3f} m by "
       "{:.3f} m{}, its rear axle where that one's is\n",
-      drives_vehicle_, own.length_m, own.width_m, vehicle_.string(), vehicle.shape.length_m,
-      vehicle.shape.width_m, has_more ? " and more parts" : "");
+      drives_vehicle_.string(), own.length_m, own.width_m, vehicle_.string(),
+      vehicle.shape.length_m, vehicle.shape.width_m, has_more ? " and more parts" : "");
 }
 
 bool AuditAsked::shifts_obstacles() const {
@@ -225,7 +222,7 @@ bool AuditAsked::shifts_obstacles() const {
 }
 
 Vehicle AuditAsked::read_vehicle() const {
-  return vehicle_.empty() ? Vehicle{} : tools::read_vehicle(vehicle_);
+  return vehicle_file().empty() ? Vehicle{} : tools::read_vehicle(vehicle_file());
 }
 
 AuditQuestion AuditAsked::question(const Vehicle& vehicle, const map::RoadMap* road_map,

@@ -31,7 +31,10 @@ class AuditAsked {
   /// Which points of the occupancy count, where that is of clouds.
   const FilterArguments& filter() const { return filter_; }
   const std::filesystem::path& map_file() const { return map_; }
-  const std::filesystem::path& vehicle_file() const { return vehicle_; }
+  /// The one given, else the one that a solution names.
+  const std::filesystem::path& vehicle_file() const {
+    return vehicle_.empty() ? drives_vehicle_ : vehicle_;
+  }
   const std::filesystem::path& obstacles_file() const { return obstacles_; }
 
   /// Of a log, what the command line leaves out: its map, and that the drive is on it.
@@ -45,7 +48,7 @@ class AuditAsked {
   /// @throws InputError if it, or the scenario, is unusable.
   void take_drive(const std::filesystem::path& file);
   /// The vehicle that is audited as the solution names it; empty: it is not from there.
-  std::string vehicle_of_drive() const { return is_drives_vehicle_ ? vehicle_.string() : ""; }
+  std::string vehicle_of_drive() const { return vehicle_.empty() ? drives_vehicle_.string() : ""; }
   /// In a line, that the vehicle given has another shape than the solution's; empty: it has not.
   std::string vehicle_note(const Vehicle& vehicle) const;
   /// Whether dynamic obstacles are at other times than their file alone says.
@@ -90,8 +93,7 @@ class AuditAsked {
   std::optional<Argument> clearance_argument_, inflate_argument_, unknown_argument_,
       least_measured_argument_, from_height_argument_, margin_argument_, seam_argument_;
   std::filesystem::path occupancy_, vehicle_, map_, obstacles_;
-  std::string drives_vehicle_;      // that a solution names
-  bool is_drives_vehicle_ = false;  // whether it is the one audited
+  std::filesystem::path drives_vehicle_;  // that a solution names
   FilterArguments filter_;
   planning::AuditOptions options_;
   std::string ground_, on_, rules_;

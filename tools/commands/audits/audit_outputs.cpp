@@ -62,7 +62,6 @@ void refuse_certificate_of_streams(const AuditAsked& asked, const AuditSubjects&
   }
 }
 
-// Who checks it gets the drive as it was audited, and needs no options to read it.
 // That of a surface has no word for what is unknown.
 void refuse_certificate_of_gaps(const AuditedDrive& audited) {
   if (audited.between_poses.empty()) return;
@@ -74,6 +73,7 @@ void refuse_certificate_of_gaps(const AuditedDrive& audited) {
        .remedy = "leave out --certificate"});
 }
 
+// Who checks it gets the drive as it was audited, and needs no options to read it.
 void refuse_certificate_of_logs(const AuditSubjects& subjects) {
   if (subjects.is_swept() || subjects.is_folder() || is_drive_table(subjects.file())) return;
   throw map::InputError({.file = map::input_name(subjects.file()),

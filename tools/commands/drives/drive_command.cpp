@@ -119,7 +119,8 @@ Json drive_json(const DriveOfFile& read) {
 
 void print_rate(std::ostream& out, const Json& of) {
   if (!of["rate_hz"].is_null()) fmt::print(out, ", {:.3g} Hz", of["rate_hz"].get<double>());
-  if (!of["gaps"].empty()) fmt::print(out, ", {} gaps", of["gaps"].size());
+  const std::size_t gaps = of["gaps"].size();
+  if (gaps > 0) fmt::print(out, ", {} gap{}", gaps, gaps == 1 ? "" : "s");
 }
 
 void print_topic(std::ostream& out, const Json& topic) {
