@@ -158,7 +158,10 @@ RoadPosition position_beside(const ReferenceTable& reference, const Eigen::Vecto
     position = {s_m, geometry::cross(point.along, off), 1.0};
     if (on_m == s_m) position.bend -= point.curvature_per_m * position.t_m;
     const double ahead_m = point.along.dot(off) / std::max(0.05, position.bend);
-    s_m += std::clamp(ahead_m, -5.0, 5.0);
+    const double next_m = s_m + std::clamp(ahead_m, -5.0, 5.0);
+    // The road bends where it ends, too, so that no step leads from the straight beyond into it.
+    const bool enters = on_m != s_m && (next_m > on_m) == (on_m > s_m);
+    s_m = enters ? on_m : next_m;
     if (std::abs(ahead_m) < 1e-5) {  // what is left is smaller by as much again
       position.s_m = s_m;
       break;

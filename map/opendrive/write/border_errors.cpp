@@ -65,9 +65,9 @@ class LineError {
     std::optional<Place> last;
     const auto look = [&](const Eigen::Vector2d& point) {
       Place place{point, distance_beside_m(point, beside, at)};
-      if (place.most_m > std::min(largest_m_, kWorthALook_m)) {
+      if (place.most_m > std::min(largest_.largest_m, kWorthALook_m)) {
         place.most_m = others_.distance_m(point, place.most_m);
-        largest_m_ = std::max(largest_m_, place.most_m);
+        note(place);
       }
       if (last && std::max(last->most_m, place.most_m) > kWorthALook_m) look_between(*last, place);
       last = place;
@@ -82,7 +82,7 @@ class LineError {
     }
   }
 
-  double largest_m() const { return largest_m_; }
+  const BorderError& largest() const { return largest_; }
 
  private:
   struct Place {
@@ -90,14 +90,18 @@ class LineError {
     double most_m;  ///< it is no farther from the others
   };
 
+  void note(const Place& place) {
+    if (place.most_m > largest_.largest_m) largest_ = {place.most_m, place.at};
+  }
+
   // No place between is farther off than half of both distances and of the way.
   void look_between(const Place& from, const Place& to) {
     const double way_m = (to.at - from.at).norm();
-    const bool is_no_farther = 0.5 * (from.most_m + to.most_m + way_m) <= largest_m_;
+    const bool is_no_farther = 0.5 * (from.most_m + to.most_m + way_m) <= largest_.largest_m;
     if (way_m < kLookedAt_m || is_no_farther) return;
     const Eigen::Vector2d at = 0.5 * (from.at + to.at);
     const Place middle{at, others_.distance_m(at, 0.5 * (from.most_m + to.most_m + way_m))};
-    largest_m_ = std::max(largest_m_, middle.most_m);
+    note(middle);
     look_between(from, middle);
     look_between(middle, to);
   }
@@ -120,7 +124,7 @@ class LineError {
   }
 
   const NearestLine& others_;
-  double largest_m_ = 0.0;
+  BorderError largest_;
 };
 
 std::vector<Eigen::Vector2d> own_part(const RoadBorder& border) {
@@ -133,8 +137,8 @@ std::vector<Eigen::Vector2d> own_part(const RoadBorder& border) {
 
 }  // namespace
 
-std::vector<double> border_errors_m(const RoadMap& road_map, const RoadPlan& plan,
-                                    const std::vector<RoadShape>& shapes) {
+std::vector<BorderError> border_errors(const RoadMap& road_map, const RoadPlan& plan,
+                                       const std::vector<RoadShape>& shapes) {
   std::vector<std::vector<std::vector<WrittenLine>>> written;  // by road, section, border
   std::vector<LineSpan> all_written, all_source;
   for (const RoadShape& shape : shapes) {
@@ -148,7 +152,7 @@ std::vector<double> border_errors_m(const RoadMap& road_map, const RoadPlan& pla
     }
   }
   const NearestLine nearest_written(all_written), nearest_source(all_source);
-  std::vector<double> errors_m;
+  std::vector<BorderError> errors;
   for (std::size_t road = 0; road < shapes.size(); ++road) {
     LineError there(nearest_source), back(nearest_written);
     const std::vector<WrittenSection> sections = written_sections(shapes[road]);
@@ -167,9 +171,10 @@ std::vector<double> border_errors_m(const RoadMap& road_map, const RoadPlan& pla
                  written[road][i][border]);
       }
     }
-    errors_m.push_back(std::max(there.largest_m(), back.largest_m()));
+    errors.push_back(
+        std::ranges::max(there.largest(), back.largest(), {}, &BorderError::largest_m));
   }
-  return errors_m;
+  return errors;
 }
 
 }  // namespace roadbed::map::opendrive

@@ -15,10 +15,11 @@ namespace {
 constexpr double kShort_m = 0.15;   // ends of borders that say nothing of a direction
 constexpr double kSkew_rad = 0.12;  // from square, of a line through the ends
 constexpr double kMostSkew_rad = 1.1;
-constexpr double kDirection_m = 3.0;  // of a lane's direction at its end
-constexpr double kOffLine_m = 0.15;   // of an end from that line
-constexpr double kMostCut_m = 8.0;    // off a road for a square end
-constexpr double kMostShare = 0.3;    // the same, of its length
+constexpr double kDirection_m = 3.0;    // of a lane's direction at its end
+constexpr double kOffLine_m = 0.15;     // of an end from that line
+constexpr double kSamePlace_m = 0.005;  // of lines across an end
+constexpr double kMostCut_m = 8.0;      // off a road for a square end
+constexpr double kMostShare = 0.3;      // the same, of its length
 
 /// Where borders end, and which way their lanes go on along s.
 struct EndPoints {
@@ -49,6 +50,19 @@ struct EndPoints {
     return {least_m, most_m};
   }
 
+  // How far before a line the points are, each place once.
+  std::vector<double> offsets_m(const EndLine& line) const {
+    std::vector<double> off_m;
+    for (const Eigen::Vector2d& point : points) {
+      off_m.push_back(unit(line.heading_rad).dot(point - line.in_map));
+    }
+    std::ranges::sort(off_m);
+    const auto same =
+        std::ranges::unique(off_m, [](double a, double b) { return b - a < kSamePlace_m; });
+    off_m.erase(same.begin(), same.end());
+    return off_m;
+  }
+
   // The principal axis of the points.
   EndLine through() const {
     const Eigen::Vector2d centre = middle();
@@ -76,7 +90,6 @@ class EndLineFinder {
     rims_.resize(count);
     std::vector<int> ends_of(count);
     for (const std::uint32_t group : groups_) ++ends_of[group];
-    is_mesh_.resize(count);
     is_free_.resize(count);
     for (std::uint32_t end = 0; end < count; ++end) {
       own_.push_back(points_at(plan.roads[end / 2], end % 2 == 1));
@@ -86,9 +99,6 @@ class EndLineFinder {
       if (role == EndRole::hub) hubs_[groups_[end]] = end;
       if (role == EndRole::free) is_free_[groups_[end]] = true;
       if (role == EndRole::free && ends_of[groups_[end]] == 1) rims_[groups_[end]] = end;
-      if (role == EndRole::mesh_entry || role == EndRole::mesh_exit) {
-        is_mesh_[groups_[end]] = true;
-      }
     }
   }
 
@@ -176,15 +186,15 @@ class EndLineFinder {
   // Where all borders of the road that leads into a junction are still there; behind the last of a
   // road that leads nowhere; else amid the ends, and before and behind them all.
   std::vector<EndLine> at_heading(std::uint32_t group, double heading_rad) const {
-    if (hubs_[group]) return {cut_back(*hubs_[group], heading_rad)};
     if (rims_[group]) return {rim(*rims_[group], heading_rad)};
     const EndLine middle{together_[group].middle(), heading_rad};
-    if (is_mesh_[group] || is_free_[group]) return {middle};
-    std::vector<EndLine> lines{middle};
-    const auto [behind_m, before_m] = together_[group].before_m(middle);
-    for (const double off_m : {behind_m, before_m}) {
+    std::vector<EndLine> lines;
+    if (hubs_[group]) lines.push_back(cut_back(*hubs_[group], heading_rad));
+    lines.push_back(middle);
+    for (const double off_m : together_[group].offsets_m(middle)) {
       lines.push_back({middle.in_map + off_m * unit(heading_rad), heading_rad});
     }
+    for (EndLine& line : lines) line.off_m = (line.in_map - middle.in_map).norm();
     return lines;
   }
 
@@ -222,7 +232,7 @@ class EndLineFinder {
   std::vector<EndPoints> own_, together_;           // by end, by group
   std::vector<std::optional<std::uint32_t>> hubs_;  // by group
   std::vector<std::optional<std::uint32_t>> rims_;  // likewise: the only end, which leads nowhere
-  std::vector<bool> is_mesh_, is_free_;             // likewise
+  std::vector<bool> is_free_;                       // likewise
 };
 
 }  // namespace

@@ -15,6 +15,7 @@ struct EndLine {
   double heading_rad = 0.0;
   /// Nothing goes on there: borders may end inside the road, each where the map has it end.
   bool is_rim = false;
+  double off_m = 0.0;  ///< how far from amid the ends of the borders
 };
 
 /// Lines across the ends of roads, some to choose from, the likeliest first. Roads that join each

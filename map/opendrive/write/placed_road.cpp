@@ -20,7 +20,7 @@ constexpr double kReferenceTolerance_m = 0.004;
 constexpr double kSourceScale_m = 0.05, kSourceTolerance_m = 1.5e-3, kSourceStep_m = 0.1;
 constexpr double kLeastAcross_m = 0.2;  // between borders that say how a cross-section lies
 constexpr double kLeastBend = 0.1;
-constexpr double kBack_m = 0.005, kMissing_m = 0.01, kSideways_m = 0.3, kCrossing_m = 0.005;
+constexpr double kBack_m = 0.005, kMissing_m = 0.005, kSideways_m = 0.3, kCrossing_m = 0.005;
 constexpr double kShortest_m = 0.02;  // of a road between its ends
 constexpr double kFine_m = 5e-4,
                  kCoarse_m = 0.01;  // of chords; to see soon that a line is no better
@@ -56,12 +56,15 @@ class RoadPlacer {
   RoadPlacer(const RoadMap& road_map, const PlannedRoad& road, std::size_t border,
              const std::array<EndLine, 2>& ends)
       : road_map_(road_map), road_(road) {
-    placed_.is_rim = {ends[0].is_rim, ends[1].is_rim};
     for (const PlannedSection& section : road.sections) {
       auto& borders = borders_.emplace_back();
       for (std::size_t i = 0; i <= section.lanes.size(); ++i) {
         borders.push_back(border_along(road_map, section, i));
       }
+    }
+    for (const bool last : {false, true}) {
+      may_end_[last] = borders_that_end(last, ends[last].is_rim);
+      placed_.is_rim[last] = std::ranges::count(may_end_[last], true) > 0;
     }
     targets_.push_back(target(reference_along(road_map, road, border), ends));
     if (road.source) return;
@@ -103,6 +106,28 @@ class RoadPlacer {
       }
     }
     return true;
+  }
+
+  // Which borders may end before the road does: all where it leads nowhere, else those of lanes
+  // that lead nowhere, but the one from which others are measured.
+  std::vector<bool> borders_that_end(bool last, bool is_rim) const {
+    const PlannedSection& section = last ? road_.sections.back() : road_.sections.front();
+    const auto& borders = last ? borders_.back() : borders_.front();
+    std::vector<bool> may_end;
+    for (std::size_t i = 0; i < borders.size(); ++i) {
+      const bool goes_on =
+          last ? borders[i].own_to + 1 < borders[i].points.size() : borders[i].own_from > 0;
+      const bool is_joined = (i > 0 && leads_on(section.lanes[i - 1], last)) ||
+                             (i < section.lanes.size() && leads_on(section.lanes[i], last));
+      const bool is_own = road_.source || i == section.left_lanes || goes_on || is_joined;
+      may_end.push_back(is_rim || !is_own);
+    }
+    return may_end;
+  }
+
+  bool leads_on(const PlannedLane& lane, bool last) const {
+    const LaneLinks& links = road_map_.graph().of(lane.lane);
+    return !(lane.forward == last ? links.successors : links.predecessors).empty();
   }
 
   using Places = std::pair<std::size_t, std::size_t>;  // from one up to before another
@@ -306,17 +331,19 @@ class RoadPlacer {
     placed_.reach.clear();
     place_sections();
     for (std::size_t i = 0; i < road_.sections.size(); ++i) {
-      const BesideOptions options{.chord_m = chord_m,
-                                  .hopeless_bend = kLeastBend - most_m - uncertain_m(chord_m),
-                                  .may_end = {i == 0 && placed_.is_rim[0],
-                                              i + 1 == road_.sections.size() && placed_.is_rim[1]}};
       auto& lines = placed_.borders.emplace_back();
       auto& reach = placed_.reach.emplace_back();
-      for (const RoadBorder& border : borders_[i]) {
-        PlacedBorder placed = line_beside(*reference_, border, placed_.section_from_m[i],
-                                          placed_.section_from_m[i + 1], placed_.faults, options);
+      const bool is_first = i == 0, is_last = i + 1 == road_.sections.size();
+      const double from_m = placed_.section_from_m[i], to_m = placed_.section_from_m[i + 1];
+      for (std::size_t k = 0; k < borders_[i].size(); ++k) {
+        const std::array<bool, 2> may_end{is_first && may_end_[0][k], is_last && may_end_[1][k]};
+        const BesideOptions options{.chord_m = chord_m,
+                                    .hopeless_bend = kLeastBend - most_m - uncertain_m(chord_m),
+                                    .may_end = may_end};
+        PlacedBorder placed =
+            line_beside(*reference_, borders_[i][k], from_m, to_m, placed_.faults, options);
         lines.push_back(std::move(placed.line));
-        reach.push_back({placed.from_m, placed.to_m});
+        reach.push_back({may_end[0] ? placed.from_m : from_m, may_end[1] ? placed.to_m : to_m});
         sum_faults(chord_m);
         if (placed_.fault_m >= most_m) return false;
       }
@@ -353,6 +380,7 @@ class RoadPlacer {
   const RoadMap& road_map_;
   const PlannedRoad& road_;
   std::vector<std::vector<RoadBorder>> borders_;  // by section, from left to right
+  std::array<std::vector<bool>, 2> may_end_;      // at each end, by border
   std::vector<ReferenceTarget> targets_;          // what the reference line may follow
   std::optional<ReferenceTable> reference_;
   PlacedRoad placed_;

@@ -17,7 +17,7 @@ struct PlacedRoad {
   std::vector<std::vector<BesideLine>> borders;  ///< by section, from left to right
   /// Between which stations the map has each of them.
   std::vector<std::vector<StationRange>> reach;
-  std::array<bool, 2> is_rim{};  ///< whether borders may end before the road does, at its ends
+  std::array<bool, 2> is_rim{};  ///< whether some border may end before the road does, at its ends
   BesideFaults faults;
   double fault_m = 0.0;  ///< how far it is from being sound, 0 if it is (README)
 };

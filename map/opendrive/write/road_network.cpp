@@ -305,10 +305,16 @@ class NetworkBuilder {
   // A lane that ends in a point leads nowhere.
   bool has_width(const PartEnd& end, std::uint32_t lane) const {
     const RoadPart& part = network_.parts[end.part];
+    const RoadShape& shape = shapes_[part.road];
+    const double at_m = end.at_end ? part.to_m : part.from_m;
+    const auto& rims = shape.rims[end.at_end];
+    const bool is_outermost = end.at_end ? at_m >= shape.length_m : at_m <= 0.0;
+    if (is_outermost && !rims.empty()) {
+      return (end.at_end ? rims.back() : rims.front()).has_width(lane, at_m);
+    }
     const auto section =
         static_cast<std::size_t>(end.section - plan_.roads[part.road].sections.data());
-    return shapes_[part.road].sections[section].has_width(lane,
-                                                          end.at_end ? part.to_m : part.from_m);
+    return shape.sections[section].has_width(lane, at_m);
   }
 
   void name_parts() {

@@ -10,6 +10,7 @@
 namespace roadbed::map::opendrive {
 namespace {
 
+constexpr double kChord_m = 0.0005;          // how straight a cubic is between samples
 constexpr double kSameRim_m = 0.005;         // ends of borders that are nearer are one
 constexpr double kLeastBetweenRims_m = 0.1;  // rims at both ends of a road
 
@@ -209,6 +210,22 @@ class RoadShaper {
     return made;
   }
 
+  // Stations between those there are, so that the cubics are straight from one to the next.
+  static void add_where_bent(std::vector<double>& s_m,
+                             const std::vector<const geometry::PiecewiseCubic*>& cubics) {
+    const std::size_t count = s_m.size();
+    for (std::size_t i = 1; i < count; ++i) {
+      const double from_m = s_m[i - 1], length_m = s_m[i] - from_m;
+      double bend_per_m = 0.0;
+      for (const auto* cubic : cubics) bend_per_m += cubic->bounds(from_m, s_m[i]).d2;
+      const double steps = std::ceil(length_m * std::sqrt(bend_per_m / (8.0 * kChord_m)));
+      for (double step = 1.0; step < steps; ++step) {
+        s_m.push_back(from_m + step / steps * length_m);
+      }
+    }
+    std::sort(s_m.begin(), s_m.end());
+  }
+
   // The width out to a border, from where the borders inside it were put.
   geometry::PiecewiseCubic fit_width(const BesideLine& line,
                                      const std::vector<const geometry::PiecewiseCubic*>& inner,
@@ -222,6 +239,7 @@ class RoadShaper {
       }
     }
     std::sort(s_m.begin(), s_m.end());
+    add_where_bent(s_m, inner);
     const auto inside = [&](double at_m, double record_m) {
       double t_m = inner[0]->at(at_m, record_m).value;
       for (std::size_t i = 1; i < inner.size(); ++i) {

@@ -15,7 +15,8 @@ namespace {
 constexpr int kMostRounds = 4, kMostPlans = 3;
 constexpr double kParting_m = 0.2;   // fault of a road with several lanes that is too much
 constexpr double kHopeless_m = 1.0;  // of one with a single lane
-constexpr double kGain_m = 1e-3;     // that makes another line worth while
+constexpr double kGain_m = 1e-4;     // that makes another line worth while
+constexpr double kDetour = 1e-3;     // what a line costs by its distance from the map's own ends
 constexpr double kGap_m = 5e-3;      // between borders at a joint, which is let be
 
 /// Lanes with the border that a reference line follows and the lines across their ends: all that a
@@ -141,17 +142,25 @@ class RoadsPlacer {
     }
   }
 
-  // Takes the line with the least faults and gaps.
+  // What a line costs that leads away from the map's own ends.
+  double detour_m(std::size_t group, std::size_t choice) const {
+    return kDetour * lines_.choices[group][choice].off_m;
+  }
+
+  // Where there are faults or gaps takes the line with the least of them, and of such the one that
+  // is nearest to the map's own ends.
   bool improve(std::size_t group) {
     const auto& roads = roads_of_[group];
     double least_m = gap_m(group);
     for (const std::uint32_t road : roads) least_m += roads_[road].fault_m;
+    if (least_m <= 0.0) return false;
     const std::size_t before = chosen_[group];
+    least_m += detour_m(group, before);
     std::size_t best = before;
-    for (std::size_t i = 0; i < lines_.choices[group].size() && least_m > 0.0; ++i) {
+    for (std::size_t i = 0; i < lines_.choices[group].size(); ++i) {
       if (i == before) continue;
       chosen_[group] = i;
-      double sum_m = 0.0;
+      double sum_m = detour_m(group, i);
       for (const std::uint32_t road : roads) {
         if (sum_m > least_m - kGain_m) break;
         sum_m += fault_m(road, least_m - kGain_m - sum_m + 1e-9);

@@ -39,7 +39,7 @@ class FileWriter {
     ShapedRoads roads = shape_roads(road_map, options.minor);
     plan_ = std::move(roads.plan);
     shapes_ = std::move(roads.shapes);
-    measure(border_errors_m(road_map, plan_, shapes_));
+    measure(border_errors(road_map, plan_, shapes_));
     network_ = join_roads(road_map, plan_, shapes_);
     furniture_ = furniture_text(road_map, plan_, shapes_, network_, options.minor);
   }
@@ -63,23 +63,23 @@ class FileWriter {
   }
 
   // Names the roads that are too far off, the worst first.
-  void measure(const std::vector<double>& errors_m) {
+  void measure(const std::vector<BorderError>& errors) {
     std::vector<std::size_t> roads;
-    for (std::size_t road = 0; road < errors_m.size(); ++road) {
-      file_.largest_error_m = std::max(file_.largest_error_m, errors_m[road]);
+    for (std::size_t road = 0; road < errors.size(); ++road) {
+      file_.largest_error_m = std::max(file_.largest_error_m, errors[road].largest_m);
       file_.largest_height_error_m =
           std::max(file_.largest_height_error_m, shapes_[road].height_error_m);
-      if (errors_m[road] > kAim_m) roads.push_back(road);
+      if (errors[road].largest_m > kAim_m) roads.push_back(road);
     }
     std::ranges::stable_sort(roads, std::ranges::greater{},
-                             [&](std::size_t road) { return errors_m[road]; });
+                             [&](std::size_t road) { return errors[road].largest_m; });
     for (const std::size_t road : roads) {
       const PlannedLane& first = plan_.roads[road].sections.front().lanes.front();
+      const Eigen::Vector2d at = road_map_.to_source(errors[road].at);
       file_.notes.push_back(
-          fmt::format("the road of lane {} has borders up to {:.3f} m off: they end askew, turn "
-                      "too sharply, or "
-                      "are another's for the lane beside it",
-                      road_map_.lane(first.lane).name, errors_m[road]));
+          fmt::format("the road of lane {} has borders up to {:.3f} m off, at {:.2f},{:.2f}: they "
+                      "end askew, turn too sharply, or are another's for the lane beside it",
+                      road_map_.lane(first.lane).name, errors[road].largest_m, at.x(), at.y()));
     }
   }
 

@@ -43,6 +43,20 @@ TEST(BesideLine, FindsThePlaceThatAPointWasPutAt) {
   }
 }
 
+TEST(BesideLine, FindsAPlaceOutsideOfATightBendFromBeyondItsEnds) {
+  const geometry::PlanView view({{0.0, 2.5, {0.0, 0.0, 0.1}, geometry::ArcCurve{-0.5}}});
+  std::mt19937 random(20261129);
+  std::uniform_real_distribution<double> s(0.0, 2.5), t(-1.0, 9.0), beyond(0.0, 4.0);
+  for (int run = 0; run < 1000; ++run) {
+    const double s_m = s(random), t_m = t(random), beyond_m = beyond(random);
+    for (const double from_m : {-beyond_m, 2.5 + beyond_m}) {
+      const RoadPosition at = position_beside(table(view), place(view, s_m, t_m), from_m);
+      EXPECT_NEAR(at.s_m, s_m, 1e-6);
+      EXPECT_NEAR(at.t_m, t_m, 1e-6);
+    }
+  }
+}
+
 RoadBorder border_at(const geometry::PlanView& view,
                      const std::vector<std::pair<double, double>>& st) {
   RoadBorder border;
