@@ -20,7 +20,7 @@ constexpr double kReferenceTolerance_m = 0.004;
 constexpr double kSourceScale_m = 0.05, kSourceTolerance_m = 1.5e-3, kSourceStep_m = 0.1;
 constexpr double kLeastAcross_m = 0.2;  // between borders that say how a cross-section lies
 constexpr double kLeastBend = 0.1;
-constexpr double kBack_m = 0.005, kMissing_m = 0.005, kSideways_m = 0.3, kCrossing_m = 0.005;
+constexpr double kBack_m = 0.005, kMissing_m = 0.005, kSideways_m = 2.0, kCrossing_m = 0.005;
 constexpr double kShortest_m = 0.02;  // of a road between its ends
 constexpr double kFine_m = 5e-4,
                  kCoarse_m = 0.01;  // of chords; to see soon that a line is no better
