@@ -102,8 +102,8 @@ int run_command_line(int argc, char** argv) {
   program.flag("-q,--quiet", common.quiet, "No progress and no notes; errors are still printed");
   program
       .add("--threads", common.threads,
-           "Threads to use; the output is the same for any (by default 1; import: one for each "
-           "processor, up to 4)")
+           "Threads to use; the output is the same for any (by default 1; import and export to "
+           "OpenDRIVE: one for each processor, up to 4)")
       .checked([](const std::string& text) {
         int threads = 0;
         const bool is_count = CLI::detail::lexical_cast(text, threads) && threads > 0;

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <new>
 
+#include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/files/input_error.h"
 
 namespace roadbed::tools::inline cli {
@@ -17,6 +19,11 @@ Failure failure_of(const std::exception& error) {
   }
   return {Exit::internal,
           fmt::format("internal error: {}; please report it with the command line", error.what())};
+}
+
+int CommonOptions::several_threads() const {
+  constexpr int most = 4;  // unless more are asked for
+  return threads > 0 ? threads : std::min(map::processors(), most);
 }
 
 }  // namespace roadbed::tools::cli

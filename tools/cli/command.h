@@ -39,6 +39,9 @@ struct CommonOptions {
   std::vector<std::filesystem::path> input_files = {};
   /// Where it gets what it may share with other runs in the process; never null.
   std::shared_ptr<const Inputs> inputs = std::make_shared<const Inputs>();
+
+  /// For commands that choose one thread for each processor, up to 4.
+  int several_threads() const;
 };
 
 /// Where a command prints: results to `out`, everything else to `err`.

@@ -7,6 +7,7 @@
 
 #include "roadbed/geometry/index/box_tree.h"
 #include "roadbed/geometry/primitives/segment.h"
+#include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/opendrive/write/road_lines.h"
 #include "roadbed/map/opendrive/write/written_borders.h"
 
@@ -138,11 +139,14 @@ std::vector<Eigen::Vector2d> own_part(const RoadBorder& border) {
 }  // namespace
 
 std::vector<BorderError> border_errors(const RoadMap& road_map, const RoadPlan& plan,
-                                       const std::vector<RoadShape>& shapes) {
-  std::vector<std::vector<std::vector<WrittenLine>>> written;  // by road, section, border
+                                       const std::vector<RoadShape>& shapes, int threads) {
+  // By road, section, border.
+  std::vector<std::vector<std::vector<WrittenLine>>> written(shapes.size());
+  in_threads(shapes.size(), threads,
+             [&](std::size_t road) { written[road] = written_borders(shapes[road]); });
   std::vector<LineSpan> all_written, all_source;
-  for (const RoadShape& shape : shapes) {
-    for (const auto& section : written.emplace_back(written_borders(shape))) {
+  for (const auto& sections : written) {
+    for (const auto& section : sections) {
       all_written.insert(all_written.end(), section.begin(), section.end());
     }
   }
@@ -152,8 +156,8 @@ std::vector<BorderError> border_errors(const RoadMap& road_map, const RoadPlan& 
     }
   }
   const NearestLine nearest_written(all_written), nearest_source(all_source);
-  std::vector<BorderError> errors;
-  for (std::size_t road = 0; road < shapes.size(); ++road) {
+  std::vector<BorderError> errors(shapes.size());
+  in_threads(shapes.size(), threads, [&](std::size_t road) {
     LineError there(nearest_source), back(nearest_written);
     const std::vector<WrittenSection> sections = written_sections(shapes[road]);
     for (std::size_t i = 0; i < sections.size(); ++i) {
@@ -171,9 +175,8 @@ std::vector<BorderError> border_errors(const RoadMap& road_map, const RoadPlan& 
                  written[road][i][border]);
       }
     }
-    errors.push_back(
-        std::ranges::max(there.largest(), back.largest(), {}, &BorderError::largest_m));
-  }
+    errors[road] = std::ranges::max(there.largest(), back.largest(), {}, &BorderError::largest_m);
+  });
   return errors;
 }
 

@@ -18,6 +18,6 @@ struct BorderError {
 /// written one, so that ends which are missing show.
 /// @param shapes  of the planned roads.
 std::vector<BorderError> border_errors(const RoadMap& road_map, const RoadPlan& plan,
-                                       const std::vector<RoadShape>& shapes);
+                                       const std::vector<RoadShape>& shapes, int threads);
 
 }  // namespace roadbed::map::opendrive

@@ -16,54 +16,15 @@ constexpr double kSameLine_m = 1e-3;  // between lines across ends that are one
 constexpr double kRampPerGap = 5.0;   // length over which a border is led to the other
 constexpr double kShortestRamp_m = 0.5;
 
-/// Where a border is in the roads that are placed.
-struct BorderPlace {
-  std::uint32_t road;
-  std::size_t section, border;
-};
-
-BorderPlace place_of(const RoadPlan& plan, LaneId lane, bool on_left) {
-  const LanePlaceInPlan& place = *plan.places[lane.index];
-  const bool forward = plan.roads[place.road].sections[place.section].lanes[place.lane].forward;
-  return {place.road, place.section, place.lane + (on_left == forward ? 0 : 1)};
-}
-
-/// The line across an end of a road, of which t = 0 is the origin.
-struct LineAcross {
-  LineAcross(const PlacedRoad& road, bool at_last) : last(at_last) {
-    const geometry::PlanPiece& piece = last ? road.plan_view.back() : road.plan_view.front();
-    const geometry::Pose2 pose =
-        geometry::plan_point(piece, last ? piece.s_m + piece.length_m : piece.s_m).pose;
-    const Eigen::Vector2d along = unit(pose.heading_rad);
-    origin = pose.position();
-    across = {-along.y(), along.x()};
-  }
-
-  /// Where a border meets it.
-  Eigen::Vector2d at(const BesideLine& line) const {
-    return origin + (last ? line.back().t_m : line.front().t_m) * across;
-  }
-
-  bool last;
-  Eigen::Vector2d origin, across;
-};
-
 /// Where a border of a lane meets the line across its road's end.
 struct BorderEnd {
   std::uint32_t end;
   BesideLine* line;
-  LineAcross of;
+  Eigen::Vector2d point, across;     // on the line, and along it to the left
   const geometry::Polyline* source;  // what the map says of it
 
-  Eigen::Vector2d point() const { return of.at(*line); }
+  bool is_last() const { return end % 2 == 1; }
 };
-
-Eigen::Vector2d end_point(const RoadPlan& plan, const std::vector<PlacedRoad>& placed,
-                          std::uint32_t end, LaneId lane, bool on_left) {
-  const BorderPlace place = place_of(plan, lane, on_left);
-  const PlacedRoad& road = placed[place.road];
-  return LineAcross(road, end % 2 == 1).at(road.borders[place.section][place.border]);
-}
 
 class JointCloser {
  public:
@@ -78,7 +39,7 @@ class JointCloser {
     for (const std::vector<std::size_t>& meeting : meetings_) {
       const Eigen::Vector2d point = meeting_point(meeting);
       for (const std::size_t i : meeting) {
-        const double by_m = (point - borders_[i].point()).dot(borders_[i].of.across);
+        const double by_m = (point - borders_[i].point).dot(borders_[i].across);
         if (std::abs(by_m) > kClosed_m) lead(borders_[i], by_m);
       }
     }
@@ -99,9 +60,9 @@ class JointCloser {
       for (const auto& [leaving, entering] : lanes) {
         for (const bool on_left : {true, false}) {
           const std::size_t a = add(from, leaving, on_left), b = add(to, entering, on_left);
-          const Eigen::Vector2d gap = borders_[b].point() - borders_[a].point();
-          const double along_m = gap.dot(borders_[a].of.across);
-          if ((gap - along_m * borders_[a].of.across).norm() > kSameLine_m) continue;
+          const Eigen::Vector2d gap = borders_[b].point - borders_[a].point;
+          const Eigen::Vector2d& across = borders_[a].across;
+          if ((gap - gap.dot(across) * across).norm() > kSameLine_m) continue;
           pairs_.push_back({a, b, gap.norm()});
         }
       }
@@ -109,14 +70,19 @@ class JointCloser {
   }
 
   std::size_t add(std::uint32_t end, LaneId id, bool on_left) {
-    const BorderPlace place = place_of(plan_, id, on_left);
+    const BorderPlace place = plan_.border_of(id, on_left);
     PlacedRoad& road = placed_[place.road];
     BesideLine* line = &road.borders[place.section][place.border];
     const auto [found, is_new] = numbers_.emplace(std::pair(line, end % 2), borders_.size());
     if (!is_new) return found->second;
     const Lane& lane = road_map_.lane(id);
-    borders_.push_back(
-        {end, line, LineAcross(road, end % 2 == 1), &(on_left ? lane.left : lane.right).in_map});
+    const bool last = end % 2 == 1;
+    const Eigen::Vector2d along = unit(road.end_pose(last).heading_rad);
+    borders_.push_back({end,
+                        line,
+                        road.end_point(last, place.border),
+                        {-along.y(), along.x()},
+                        &(on_left ? lane.left : lane.right).in_map});
     meetings_.push_back({found->second});
     meeting_of_.push_back(found->second);
     return found->second;
@@ -143,7 +109,7 @@ class JointCloser {
     Eigen::Vector2d best(0, 0);
     double least_m = 1e300;
     for (const std::size_t i : meeting) {
-      const Eigen::Vector2d point = borders_[i].point();
+      const Eigen::Vector2d& point = borders_[i].point;
       double off_m = 1e300;
       for (const std::size_t k : meeting) {
         off_m = std::min(off_m, std::abs(borders_[k].source->project(point).d_m));
@@ -158,7 +124,7 @@ class JointCloser {
 
   static void lead(const BorderEnd& end, double by_m) {
     BesideLine& line = *end.line;
-    const bool at_end = end.of.last;
+    const bool at_end = end.is_last();
     const double end_s_m = at_end ? line.back().s_m : line.front().s_m;
     const double length_m = line.back().s_m - line.front().s_m;
     const double ramp_m =
@@ -187,22 +153,6 @@ class JointCloser {
 };
 
 }  // namespace
-
-double joint_gap_m(const RoadPlan& plan, const EndJoints::value_type& joint,
-                   const std::vector<PlacedRoad>& placed) {
-  const auto& [ends, lanes] = joint;
-  const auto [from, to] = ends;
-  if (plan.roads[from / 2].source || plan.roads[to / 2].source) return 0.0;
-  double sum_m = 0.0;
-  for (const auto& [leaving, entering] : lanes) {
-    for (const bool on_left : {true, false}) {
-      sum_m += (end_point(plan, placed, to, entering, on_left) -
-                end_point(plan, placed, from, leaving, on_left))
-                   .norm();
-    }
-  }
-  return sum_m;
-}
 
 void close_joints(const RoadMap& road_map, const RoadPlan& plan, std::vector<PlacedRoad>& placed) {
   JointCloser(road_map, plan, placed).close();

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "roadbed/map/opendrive/write/clothoid.h"
 #include "roadbed/map/opendrive/write/end_roles.h"
 #include "roadbed/map/opendrive/write/facing_ends.h"
-#include "roadbed/map/opendrive/write/road_lines.h"
 
 namespace roadbed::map::opendrive {
 namespace {
@@ -236,6 +236,32 @@ class EndLineFinder {
 };
 
 }  // namespace
+
+Crossing crossing(const RoadBorder& border, const EndLine& line, bool last) {
+  const Line3& points = border.points;
+  const Eigen::Vector2d ahead = (last ? 1.0 : -1.0) * unit(line.heading_rad);
+  const auto place = [&](std::size_t i) { return last ? points.size() - 1 - i : i; };
+  const auto at = [&](std::size_t i) { return Eigen::Vector2d(points[place(i)].head<2>()); };
+  const auto beyond_m = [&](std::size_t i) { return ahead.dot(at(i) - line.in_map); };
+  std::size_t i = 0;
+  while (i + 1 < points.size() && beyond_m(i) > 1e-9) ++i;
+  if (i == 0) {
+    const Eigen::Vector2d along = (at(0) - at(1)).normalized();
+    const double cosine = ahead.dot(along);
+    const Eigen::Vector2d step = cosine < 0.3 ? ahead : Eigen::Vector2d(along / cosine);
+    return {at(0) - beyond_m(0) * step, place(0)};
+  }
+  const double a = beyond_m(i), b = beyond_m(i - 1);
+  if (a > 0.0) return {at(i) - a * ahead, place(i)};  // all of it lies beyond
+  return {at(i) + a / (a - b) * (at(i - 1) - at(i)), place(i)};
+}
+
+std::vector<std::size_t> EndLines::nearest_first(std::size_t group) const {
+  std::vector<std::size_t> order(choices[group].size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return choices[group][i].off_m; });
+  return order;
+}
 
 EndLine EndLines::at(std::uint32_t end, std::size_t choice) const {
   EndLine line = choices[group_of_end[end]][choice];

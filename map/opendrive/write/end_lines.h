@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "roadbed/map/opendrive/write/road_lines.h"
 #include "roadbed/map/opendrive/write/road_plan.h"
 
 namespace roadbed::map::opendrive {
@@ -25,9 +26,21 @@ struct EndLines {
   std::vector<std::uint32_t> group_of_end;    ///< ends are 2 · road, + 1 at its end
   std::vector<Eigen::Vector2d> along_of_end;  ///< which way the road goes there
 
+  /// Places among the choices of a group, by how far they are from the ends of the borders.
+  std::vector<std::size_t> nearest_first(std::size_t group) const;
+
   /// A line, its heading along the road of this end.
   EndLine at(std::uint32_t end, std::size_t choice) const;
 };
+
+/// Where a border crosses the line across a road's end.
+struct Crossing {
+  Eigen::Vector2d in_map;
+  std::size_t inside = 0;  ///< the next point of the border in the road
+};
+
+/// From the border's end inwards to the line; a border that ends before it goes straight on.
+Crossing crossing(const RoadBorder& border, const EndLine& line, bool last);
 
 /// Through all ends of the lanes' borders, if these are in line and not too askew; square to the
 /// lanes, of roads that lead into a junction where all their borders still go on; and between.

@@ -25,32 +25,6 @@ constexpr double kShortest_m = 0.02;  // of a road between its ends
 constexpr double kFine_m = 5e-4,
                  kCoarse_m = 0.01;  // of chords; to see soon that a line is no better
 
-/// Where a border crosses the line across the road's end.
-struct Crossing {
-  Eigen::Vector2d in_map;
-  std::size_t inside = 0;  ///< the next point of the border in the road
-};
-
-// From the border's end inwards to the line; a border that ends before it goes straight on.
-Crossing crossing(const RoadBorder& border, const EndLine& line, bool last) {
-  const Line3& points = border.points;
-  const Eigen::Vector2d ahead = (last ? 1.0 : -1.0) * unit(line.heading_rad);
-  const auto place = [&](std::size_t i) { return last ? points.size() - 1 - i : i; };
-  const auto at = [&](std::size_t i) { return Eigen::Vector2d(points[place(i)].head<2>()); };
-  const auto beyond_m = [&](std::size_t i) { return ahead.dot(at(i) - line.in_map); };
-  std::size_t i = 0;
-  while (i + 1 < points.size() && beyond_m(i) > 1e-9) ++i;
-  if (i == 0) {
-    const Eigen::Vector2d along = (at(0) - at(1)).normalized();
-    const double cosine = ahead.dot(along);
-    const Eigen::Vector2d step = cosine < 0.3 ? ahead : Eigen::Vector2d(along / cosine);
-    return {at(0) - beyond_m(0) * step, place(0)};
-  }
-  const double a = beyond_m(i), b = beyond_m(i - 1);
-  if (a > 0.0) return {at(i) - a * ahead, place(i)};  // all of it lies beyond
-  return {at(i) + a / (a - b) * (at(i - 1) - at(i)), place(i)};
-}
-
 class RoadPlacer {
  public:
   RoadPlacer(const RoadMap& road_map, const PlannedRoad& road, std::size_t border,
@@ -69,8 +43,8 @@ class RoadPlacer {
     targets_.push_back(target(reference_along(road_map, road, border), ends));
     if (road.source) return;
     targets_.push_back(middle(ends));
-    for (const RoadBorder* edge : {&borders_.front().front(), &borders_.front().back()}) {
-      targets_.push_back(target(*edge, ends));
+    for (const std::size_t edge : {std::size_t{0}, borders_.front().size() - 1}) {
+      if (edge != border) targets_.push_back(target(borders_.front()[edge], ends));
     }
   }
 
@@ -387,6 +361,16 @@ class RoadPlacer {
 };
 
 }  // namespace
+
+geometry::Pose2 PlacedRoad::end_pose(bool last) const {
+  const geometry::PlanPiece& piece = last ? plan_view.back() : plan_view.front();
+  return geometry::plan_point(piece, last ? piece.s_m + piece.length_m : piece.s_m).pose;
+}
+
+Eigen::Vector2d PlacedRoad::end_point(bool last, std::size_t border) const {
+  const BesideLine& line = last ? borders.back()[border] : borders.front()[border];
+  return end_pose(last) * Eigen::Vector2d(0.0, last ? line.back().t_m : line.front().t_m);
+}
 
 PlacedRoad place_road(const RoadMap& road_map, const PlannedRoad& road, std::size_t border,
                       const std::array<EndLine, 2>& ends, double most_m) {

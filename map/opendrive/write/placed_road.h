@@ -20,6 +20,11 @@ struct PlacedRoad {
   std::array<bool, 2> is_rim{};  ///< whether some border may end before the road does, at its ends
   BesideFaults faults;
   double fault_m = 0.0;  ///< how far it is from being sound, 0 if it is (README)
+
+  /// The reference line's first or last pose.
+  geometry::Pose2 end_pose(bool last) const;
+  /// Where a border meets the line across the road's first or last end.
+  Eigen::Vector2d end_point(bool last, std::size_t border) const;
 };
 
 /// Of a road of the map its own reference line and cross-sections. Else the first sound one of

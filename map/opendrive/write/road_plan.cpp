@@ -244,6 +244,12 @@ bool PlannedRoad::has_both_ways() const {
   return ways[0] && ways[1];
 }
 
+BorderPlace RoadPlan::border_of(LaneId lane, bool on_left) const {
+  const LanePlaceInPlan& place = *places[lane.index];
+  const bool forward = roads[place.road].sections[place.section].lanes[place.lane].forward;
+  return {place.road, place.section, place.lane + (on_left == forward ? 0 : 1)};
+}
+
 RoadPlan plan_roads(const RoadMap& road_map, const std::vector<Company>& company, int minor) {
   return Planner(road_map, company, minor).plan();
 }

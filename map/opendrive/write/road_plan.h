@@ -37,11 +37,20 @@ struct LanePlaceInPlan {
   std::uint32_t road = 0, section = 0, lane = 0;
 };
 
+/// Where a border is: `border` counts from the left edge along s, 0.
+struct BorderPlace {
+  std::uint32_t road = 0;
+  std::size_t section = 0, border = 0;
+};
+
 struct RoadPlan {
   std::vector<PlannedRoad> roads;
   std::vector<std::optional<LanePlaceInPlan>> places;  ///< by LaneId; none: the lane is left out
   std::vector<std::string> left_out;                   ///< lanes that no road can hold, and why
   bool left_hand_traffic = false;                      ///< as each road's rule says
+
+  /// A border of a lane that is in the plan.
+  BorderPlace border_of(LaneId lane, bool on_left) const;
 };
 
 /// Which lanes may be beside one in its road.

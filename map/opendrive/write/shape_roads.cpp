@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
+#include <optional>
 #include <utility>
 
+#include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/opendrive/write/close_joints.h"
 #include "roadbed/map/opendrive/write/end_lines.h"
+#include "roadbed/map/opendrive/write/joint_gaps.h"
 #include "roadbed/map/opendrive/write/reference_borders.h"
 #include "roadbed/map/opendrive/write/road_network.h"
 
@@ -16,8 +20,8 @@ constexpr int kMostRounds = 4, kMostPlans = 3;
 constexpr double kParting_m = 0.2;   // fault of a road with several lanes that is too much
 constexpr double kHopeless_m = 1.0;  // of one with a single lane
 constexpr double kGain_m = 1e-4;     // that makes another line worth while
-constexpr double kDetour = 1e-3;     // what a line costs by its distance from the map's own ends
-constexpr double kGap_m = 5e-3;      // between borders at a joint, which is let be
+constexpr double kRounding_m = 1e-9;
+constexpr double kDetour = 1e-3;  // what a line costs by its distance from the map's own ends
 
 /// Lanes with the border that a reference line follows and the lines across their ends: all that a
 /// road's shape depends on.
@@ -26,12 +30,12 @@ using PlaceKey = std::vector<double>;
 /// What earlier plans and rounds found.
 struct Memory {
   std::map<PlaceKey, PlacedRoad> placed;
-  std::map<PlaceKey, double> faults_m, at_least_m;  // known, and what is known to be exceeded
+  std::map<PlaceKey, double> faults_m;  // no more than they are
 };
 
 class RoadsPlacer {
  public:
-  RoadsPlacer(const RoadMap& road_map, const RoadPlan& plan, Memory& memory)
+  RoadsPlacer(const RoadMap& road_map, const RoadPlan& plan, Memory& memory, int threads)
       : road_map_(road_map),
         plan_(plan),
         memory_(memory),
@@ -40,9 +44,12 @@ class RoadsPlacer {
         ends_(find_end_roles(road_map, plan)),
         chosen_(lines_.choices.size(), 0),
         roads_of_(lines_.choices.size()),
-        joints_of_(lines_.choices.size()) {
+        joints_of_(lines_.choices.size()),
+        roads_(plan.roads.size()) {
+    in_threads(plan.roads.size(), threads,
+               [&](std::size_t road) { roads_[road] = place(static_cast<std::uint32_t>(road)); });
     for (std::uint32_t road = 0; road < plan.roads.size(); ++road) {
-      roads_.push_back(place(road));
+      memory_.faults_m[key(road)] = roads_[road].fault_m;
       for (const std::uint32_t end : {2 * road, 2 * road + 1}) {
         auto& roads = roads_of_[lines_.group_of_end[end]];
         if (roads.empty() || roads.back() != road) roads.push_back(road);
@@ -54,11 +61,18 @@ class RoadsPlacer {
   }
 
   std::vector<PlacedRoad> place_all() {
-    bool is_better = true;
-    for (int round = 0; is_better && round < kMostRounds; ++round) {
-      is_better = false;
+    std::vector<bool> is_open(chosen_.size(), true);
+    for (int round = 0; round < kMostRounds; ++round) {
       for (std::size_t group = 0; group < chosen_.size(); ++group) {
-        is_better = improve(group) || is_better;
+        if (!is_open[group]) continue;
+        is_open[group] = false;
+        if (!improve(group)) continue;
+        for (const std::uint32_t road : roads_of_[group]) {
+          for (const std::uint32_t end : {2 * road, 2 * road + 1}) {
+            const std::uint32_t other = lines_.group_of_end[end];
+            is_open[other] = is_open[other] || other != group;
+          }
+        }
       }
     }
     return std::move(roads_);
@@ -92,54 +106,36 @@ class RoadsPlacer {
     return key;
   }
 
-  PlacedRoad place(std::uint32_t road) const {
-    PlaceKey wanted = key(road);
-    const auto known = memory_.placed.find(wanted);
+  PlacedRoad place(std::uint32_t road, double most_m = 1e300) const {
+    const auto known = memory_.placed.find(key(road));
     if (known != memory_.placed.end()) return known->second;
-    PlacedRoad placed = place_road(road_map_, plan_.roads[road], borders_[road],
-                                   {line(2 * road), line(2 * road + 1)});
-    memory_.faults_m.emplace(std::move(wanted), placed.fault_m);
-    return placed;
+    return place_road(road_map_, plan_.roads[road], borders_[road],
+                      {line(2 * road), line(2 * road + 1)}, most_m);
   }
 
-  // The fault of a road, or some that is `most_m` or more.
-  double fault_m(std::uint32_t road, double most_m) const {
-    const PlaceKey wanted = key(road);
-    const auto known = memory_.faults_m.find(wanted);
-    if (known != memory_.faults_m.end()) return known->second;
-    double& at_least_m = memory_.at_least_m[wanted];
-    if (at_least_m >= most_m) return at_least_m;
-    const double fault_m = place_road(road_map_, plan_.roads[road], borders_[road],
-                                      {line(2 * road), line(2 * road + 1)}, most_m)
-                               .fault_m;
-    if (fault_m < most_m) memory_.faults_m.emplace(wanted, fault_m);
-    at_least_m = fault_m;
-    return fault_m;
-  }
-
-  // How far borders have to be led at the ends of a group.
-  double gap_m(std::size_t group) const {
-    double sum_m = 0.0;
-    for (const EndJoints::value_type* joint : joints_of_[group]) {
-      const double gap_m = joint_gap_m(plan_, *joint, roads_);
-      if (gap_m > kGap_m) sum_m += gap_m;
+  // The roads of a group with the line chosen now, unless their faults exceed a sum.
+  std::optional<std::vector<PlacedRoad>> place_group(std::size_t group, double most_m) const {
+    const auto& roads = roads_of_[group];
+    std::vector<PlaceKey> keys;
+    std::vector<double> at_least_m;
+    for (const std::uint32_t road : roads) {
+      keys.push_back(key(road));
+      const auto known = memory_.faults_m.find(keys.back());
+      at_least_m.push_back(known == memory_.faults_m.end() ? 0.0 : known->second);
     }
-    return sum_m;
+    double left_m = most_m - std::accumulate(at_least_m.begin(), at_least_m.end(), 0.0);
+    std::vector<PlacedRoad> placed;
+    for (std::size_t i = 0; i < roads.size() && left_m >= 0.0; ++i) {
+      left_m += at_least_m[i];
+      placed.push_back(place(roads[i], left_m + kRounding_m));
+      memory_.faults_m[keys[i]] = placed.back().fault_m;
+      left_m -= placed.back().fault_m;
+    }
+    return left_m >= 0.0 ? std::optional(std::move(placed)) : std::nullopt;
   }
 
-  // The roads of a group with the line chosen now; returns those before.
-  std::vector<PlacedRoad> place_group(std::size_t group) {
-    std::vector<PlacedRoad> before;
-    for (const std::uint32_t road : roads_of_[group]) {
-      before.push_back(std::exchange(roads_[road], place(road)));
-    }
-    return before;
-  }
-
-  void put_back(std::size_t group, std::vector<PlacedRoad> roads) {
-    for (std::size_t i = 0; i < roads.size(); ++i) {
-      roads_[roads_of_[group][i]] = std::move(roads[i]);
-    }
+  void exchange_roads(std::size_t group, std::vector<PlacedRoad>& roads) {
+    for (std::size_t i = 0; i < roads.size(); ++i) std::swap(roads_[roads_of_[group][i]], roads[i]);
   }
 
   // What a line costs that leads away from the map's own ends.
@@ -151,28 +147,37 @@ class RoadsPlacer {
   // is nearest to the map's own ends.
   bool improve(std::size_t group) {
     const auto& roads = roads_of_[group];
-    double least_m = gap_m(group);
+    const JointGaps gaps(road_map_, plan_, joints_of_[group]);
+    const auto gap_m = [&] {
+      return gaps.sum_m([&](const JointGaps::BorderEnd& at) {
+        return roads_[at.end / 2].end_point(at.end % 2 == 1, at.place);
+      });
+    };
+    double least_m = gap_m();
     for (const std::uint32_t road : roads) least_m += roads_[road].fault_m;
     if (least_m <= 0.0) return false;
     const std::size_t before = chosen_[group];
     least_m += detour_m(group, before);
     std::size_t best = before;
-    for (std::size_t i = 0; i < lines_.choices[group].size(); ++i) {
+    for (const std::size_t i : lines_.nearest_first(group)) {
+      if (least_m <= detour_m(group, i) + kGain_m) break;  // as no other is nearer
       if (i == before) continue;
       chosen_[group] = i;
-      double sum_m = detour_m(group, i);
-      for (const std::uint32_t road : roads) {
-        if (sum_m > least_m - kGain_m) break;
-        sum_m += fault_m(road, least_m - kGain_m - sum_m + 1e-9);
-      }
-      if (sum_m > least_m - kGain_m) continue;
-      auto roads_before = place_group(group);
-      sum_m += gap_m(group);
-      if (sum_m > least_m - kGain_m) {
-        put_back(group, std::move(roads_before));
+      const double most_m = least_m - kGain_m - detour_m(group, i);
+      // Where a road is sound its borders end where they cross the line.
+      const double crossing_gap_m = gaps.sum_m([&](const JointGaps::BorderEnd& at) {
+        return crossing(at.border, line(at.end), at.end % 2 == 1).in_map;
+      });
+      auto placed = place_group(group, most_m - crossing_gap_m);
+      if (!placed) continue;
+      exchange_roads(group, *placed);
+      double sum_m = gap_m();
+      for (const std::uint32_t road : roads) sum_m += roads_[road].fault_m;
+      if (sum_m > most_m) {
+        exchange_roads(group, *placed);
         continue;
       }
-      least_m = sum_m;
+      least_m = sum_m + detour_m(group, i);
       best = i;
     }
     chosen_[group] = best;
@@ -210,21 +215,22 @@ bool part_lanes(const RoadPlan& plan, const std::vector<PlacedRoad>& placed,
 
 }  // namespace
 
-ShapedRoads shape_roads(const RoadMap& road_map, int minor) {
+ShapedRoads shape_roads(const RoadMap& road_map, int minor, int threads) {
   std::vector<Company> company(road_map.lanes().size(), Company::any);
   Memory memory;
   for (int round = 0;; ++round) {
     ShapedRoads roads{plan_network_roads(road_map, company, minor), {}};
-    RoadsPlacer placer(road_map, roads.plan, memory);
+    RoadsPlacer placer(road_map, roads.plan, memory, threads);
     auto placed = placer.place_all();
     if (round < kMostPlans && part_lanes(roads.plan, placed, company)) {
       placer.remember(std::move(placed));
       continue;
     }
     close_joints(road_map, roads.plan, placed);
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-      roads.shapes.push_back(shape_road(road_map, roads.plan.roads[i], placed[i]));
-    }
+    roads.shapes.resize(placed.size());
+    in_threads(placed.size(), threads, [&](std::size_t i) {
+      roads.shapes[i] = shape_road(road_map, roads.plan.roads[i], placed[i]);
+    });
     return roads;
   }
 }

@@ -15,6 +15,6 @@ struct ShapedRoads {
 /// chosen anew, each as the one with the least faults of all roads that share it; where that does
 /// not help, each of its lanes has a road of its own, and is left out where even that cannot be.
 /// @param minor  of the revision 1.4 to 1.8.
-ShapedRoads shape_roads(const RoadMap& road_map, int minor);
+ShapedRoads shape_roads(const RoadMap& road_map, int minor, int threads);
 
 }  // namespace roadbed::map::opendrive

@@ -36,10 +36,10 @@ class FileWriter {
  public:
   FileWriter(const RoadMap& road_map, const OpenDriveOptions& options)
       : road_map_(road_map), options_(options) {
-    ShapedRoads roads = shape_roads(road_map, options.minor);
+    ShapedRoads roads = shape_roads(road_map, options.minor, options.threads);
     plan_ = std::move(roads.plan);
     shapes_ = std::move(roads.shapes);
-    measure(border_errors(road_map, plan_, shapes_));
+    measure(border_errors(road_map, plan_, shapes_, options.threads));
     network_ = join_roads(road_map, plan_, shapes_);
     furniture_ = furniture_text(road_map, plan_, shapes_, network_, options.minor);
   }

@@ -12,6 +12,7 @@ struct OpenDriveOptions {
   std::string crs;          ///< of the map's raw coordinates, empty if unknown
   CrsOffset offset_in_crs;  ///< of these in it
   int minor = 8;            ///< revision 1.4 to 1.8
+  int threads = 1;          ///< the bytes are the same for any number
 };
 
 /// An OpenDRIVE file, and how near it is to the map.

@@ -115,6 +115,7 @@ class ExportCommand : public Command {
     map::check_writable(output_, force_);
     const std::string file = input_.filename().string();
     map::MapPageOptions page{.title = file == "-" ? map::input_name(input_) : file, .file = file};
+    threads_ = common.several_threads();
     const map::RoadMap road_map = suffix() == ".html" ? judged_map(page) : map::load_map(input_);
     overlays_.add_to(page, road_map);
     const Written written = is_own_document(format, road_map)
@@ -237,7 +238,7 @@ class ExportCommand : public Command {
   Written write_open_drive(const map::Format& format, const map::RoadMap& road_map) const {
     const auto offset = is_own_system(road_map) ? road_map.offset_in_crs() : map::CrsOffset{};
     map::opendrive::OpenDriveFile file = map::opendrive::write_open_drive(
-        road_map, {system_of(road_map), offset, open_drive_ == "1.4" ? 4 : 8});
+        road_map, {system_of(road_map), offset, open_drive_ == "1.4" ? 4 : 8, threads_});
     if (map::format_of(input_) == &format) {
       file.notes.emplace_back("the document is made anew, as its version or its system changes");
     }
@@ -340,6 +341,7 @@ class ExportCommand : public Command {
   std::vector<double> anchor_deg_;
   std::string crs_, format_, open_drive_, profile_;
   PageOverlays overlays_;
+  int threads_ = 1;
   bool force_ = false, json_ = false;
 };
 

@@ -35,7 +35,6 @@ constexpr std::uintptr_t kMapPerFile = 8;  // of memory, a file's size of bytes
 constexpr std::uintptr_t kMostHugeBytes = std::uintptr_t{1} << 27;
 // Of a larger file, lists that grew out of their place would be too much to keep.
 constexpr std::uintmax_t kMostKeptBytes = std::uintmax_t{1} << 27;
-constexpr int kMostThreads = 4;  // unless more are asked for
 
 // Makes ready the heap for a map that is read from `input`: kept when it is freed, as reading a
 // map takes and frees memory of many times the file's size, and for files of up to 16 MB in huge
@@ -110,8 +109,7 @@ class ImportCommand : public Command {
     refuse_other_formats();
     map::check_writable(output_, force_);
     if (common.is_alone) keep_heap_in_huge_pages(input_);
-    const int threads =
-        common.threads > 0 ? common.threads : std::min(map::processors(), kMostThreads);
+    const int threads = common.several_threads();
     auto road_map = std::make_unique<const map::RoadMap>(with_crs(load(threads), crs_));
     write(*road_map, threads);
     if (json_) print_json(streams.out, *road_map);

@@ -152,9 +152,15 @@ TEST(WriteOpenDrive, NamesALaneThatNoRoadCanHold) {
   EXPECT_EQ(errors_in(file), std::vector<std::string>{});
 }
 
-TEST(WriteOpenDrive, WritesTheSameBytesForTheSameMap) {
-  const RoadMap town = load_map(tests::data_folder() / "town.xodr");
-  EXPECT_EQ(file_of(town).bytes, file_of(town).bytes);
+TEST(WriteOpenDrive, WritesTheSameBytesInAnyNumberOfThreads) {
+  for (const char* name : {"town.xodr", "crossing.osm"}) {
+    const RoadMap road_map = load_map(tests::data_folder() / name);
+    const std::string bytes = file_of(road_map).bytes;
+    for (const int threads : {1, 2, 5}) {
+      EXPECT_EQ(opendrive::write_open_drive(road_map, {road_map.crs(), {}, 8, threads}).bytes,
+                bytes);
+    }
+  }
 }
 
 TEST(WriteOpenDrive, KeepsCoordinatesAndTheirSystem) {
