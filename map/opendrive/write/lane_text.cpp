@@ -14,6 +14,8 @@
 namespace roadbed::map::opendrive {
 namespace {
 
+constexpr double kInside_m = 1e-6, kNoWidth_m = 0.01;
+
 std::string_view type_word(const Lane& lane, int minor) {
   if (!lane.one_way && minor < 8 && lane.type == LaneType::driving) return "bidirectional";
   if (lane.type == LaneType::other) return "special1";
@@ -136,8 +138,19 @@ class LanesWriter {
   }
 
   void add_widths(const WrittenSection& section, std::size_t place) {
-    add_records(section.shape->widths[place], section.from_m, section.to_m, section.from_m, "width",
-                "sOffset", text_);
+    const geometry::PiecewiseCubic& widths = section.shape->widths[place];
+    const auto add_from = [&](double from_m, double to_m) {
+      add_records(widths, from_m, to_m, section.from_m, "width", "sOffset", text_);
+    };
+    // SUMO's netconvert looks at widths where records begin only, and drops a lane that has none
+    // there: one that opens over a single record gets it as two.
+    const double middle_m = 0.5 * (section.from_m + section.to_m);
+    const bool is_single = widths.record_at(section.from_m) == widths.record_at(middle_m) &&
+                           widths.record_at(middle_m) == widths.record_at(section.to_m - kInside_m);
+    const bool opens =
+        widths.at(section.from_m).value < kNoWidth_m && widths.at(middle_m).value > kNoWidth_m;
+    add_from(section.from_m, is_single && opens ? middle_m : section.to_m);
+    if (is_single && opens) add_from(middle_m, section.to_m);
   }
 
   std::string direction(const Lane& lane, bool forward, bool is_left) {

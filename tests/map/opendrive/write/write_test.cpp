@@ -138,6 +138,23 @@ TEST(WriteOpenDrive, ABorderStaysStraightOutsideOfOneThatWinds) {
   EXPECT_LE(borders_apart_m(parse_map(file.bytes, "written.xodr"), before), 0.0085);
 }
 
+TEST(WriteOpenDrive, ALaneThatOpensHasAWidthWhereARecordBegins) {
+  // What netconvert asks for, which evaluates widths nowhere else.
+  for (const double left_m : {0.0, 1.0, 3.0}) {
+    tests::MadeLanelet2 made;
+    const std::int64_t tip = made.node({0, 0});
+    made.lanelet(made.way({tip, made.node({20, left_m})}),
+                 made.way({tip, made.node({20, left_m - 3})}));
+    const std::string bytes = file_of(parse_map(made.text(), "made.osm")).bytes;
+    double widest_m = 0.0;
+    for (std::size_t at = bytes.find("<width "); at != bytes.npos;
+         at = bytes.find("<width ", at + 1)) {
+      widest_m = std::max(widest_m, std::stod(bytes.substr(bytes.find("a=\"", at) + 3)));
+    }
+    EXPECT_GE(widest_m, 1.0) << left_m;
+  }
+}
+
 TEST(WriteOpenDrive, NamesALaneThatNoRoadCanHold) {
   tests::MadeLanelet2 made;
   const auto crossing = made.line({{0, 3}, {10, -3}}), straight = made.line({{0, 0}, {10, 0}});
