@@ -39,23 +39,24 @@ struct EndPoints {
     return sum / static_cast<double>(points.size());
   }
 
-  // Least and greatest distance of the points before a line.
-  std::pair<double, double> before_m(const EndLine& line) const {
-    double least_m = 1e300, most_m = -1e300;
-    for (const Eigen::Vector2d& point : points) {
-      const double off_m = unit(line.heading_rad).dot(point - line.in_map);
-      least_m = std::min(least_m, off_m);
-      most_m = std::max(most_m, off_m);
-    }
-    return {least_m, most_m};
-  }
-
-  // How far before a line the points are, each place once.
+  // How far the points are before a line.
   std::vector<double> offsets_m(const EndLine& line) const {
     std::vector<double> off_m;
     for (const Eigen::Vector2d& point : points) {
       off_m.push_back(unit(line.heading_rad).dot(point - line.in_map));
     }
+    return off_m;
+  }
+
+  // Least and greatest distance of the points before a line.
+  std::pair<double, double> before_m(const EndLine& line) const {
+    const auto [least_m, most_m] = std::ranges::minmax(offsets_m(line));
+    return {least_m, most_m};
+  }
+
+  // The same of all, each place once.
+  std::vector<double> places_m(const EndLine& line) const {
+    std::vector<double> off_m = offsets_m(line);
     std::ranges::sort(off_m);
     const auto same =
         std::ranges::unique(off_m, [](double a, double b) { return b - a < kSamePlace_m; });
@@ -183,15 +184,15 @@ class EndLineFinder {
     return lines;
   }
 
-  // Where all borders of the road that leads into a junction are still there; behind the last of a
-  // road that leads nowhere; else amid the ends, and before and behind them all.
+  // Behind the last border of a road that leads nowhere; else where all borders of the road that
+  // leads into a junction are still there, amid the ends, and through each of them.
   std::vector<EndLine> at_heading(std::uint32_t group, double heading_rad) const {
     if (rims_[group]) return {rim(*rims_[group], heading_rad)};
     const EndLine middle{together_[group].middle(), heading_rad};
     std::vector<EndLine> lines;
     if (hubs_[group]) lines.push_back(cut_back(*hubs_[group], heading_rad));
     lines.push_back(middle);
-    for (const double off_m : together_[group].offsets_m(middle)) {
+    for (const double off_m : together_[group].places_m(middle)) {
       lines.push_back({middle.in_map + off_m * unit(heading_rad), heading_rad});
     }
     for (EndLine& line : lines) line.off_m = (line.in_map - middle.in_map).norm();

@@ -145,12 +145,12 @@ class LanesWriter {
     // SUMO's netconvert looks at widths where records begin only, and drops a lane that has none
     // there: one that opens over a single record gets it as two.
     const double middle_m = 0.5 * (section.from_m + section.to_m);
-    const bool is_single = widths.record_at(section.from_m) == widths.record_at(middle_m) &&
-                           widths.record_at(middle_m) == widths.record_at(section.to_m - kInside_m);
-    const bool opens =
-        widths.at(section.from_m).value < kNoWidth_m && widths.at(middle_m).value > kNoWidth_m;
-    add_from(section.from_m, is_single && opens ? middle_m : section.to_m);
-    if (is_single && opens) add_from(middle_m, section.to_m);
+    const bool is_single =
+        widths.record_at(section.from_m) == widths.record_at(section.to_m - kInside_m);
+    const bool opens = is_single && widths.at(section.from_m).value < kNoWidth_m &&
+                       widths.at(middle_m).value > kNoWidth_m;
+    add_from(section.from_m, opens ? middle_m : section.to_m);
+    if (opens) add_from(middle_m, section.to_m);
   }
 
   std::string direction(const Lane& lane, bool forward, bool is_left) {

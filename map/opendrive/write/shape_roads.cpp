@@ -19,9 +19,10 @@ namespace {
 constexpr int kMostRounds = 4, kMostPlans = 3;
 constexpr double kParting_m = 0.2;   // fault of a road with several lanes that is too much
 constexpr double kHopeless_m = 1.0;  // of one with a single lane
-constexpr double kGain_m = 1e-4;     // that makes another line worth while
-constexpr double kRounding_m = 1e-9;
-constexpr double kDetour = 1e-3;  // what a line costs by its distance from the map's own ends
+constexpr double kAnyFault_m = 1e300;
+constexpr double kGain_m = 1e-4;      // that makes another line worth while
+constexpr double kRounding_m = 1e-9;  // of sums of faults
+constexpr double kDetour = 1e-3;      // what a line costs by its distance from the map's own ends
 
 /// Lanes with the border that a reference line follows and the lines across their ends: all that a
 /// road's shape depends on.
@@ -46,8 +47,10 @@ class RoadsPlacer {
         roads_of_(lines_.choices.size()),
         joints_of_(lines_.choices.size()),
         roads_(plan.roads.size()) {
-    in_threads(plan.roads.size(), threads,
-               [&](std::size_t road) { roads_[road] = place(static_cast<std::uint32_t>(road)); });
+    in_threads(plan.roads.size(), threads, [&](std::size_t i) {
+      const auto road = static_cast<std::uint32_t>(i);
+      roads_[road] = place(road, key(road), kAnyFault_m);
+    });
     for (std::uint32_t road = 0; road < plan.roads.size(); ++road) {
       memory_.faults_m[key(road)] = roads_[road].fault_m;
       for (const std::uint32_t end : {2 * road, 2 * road + 1}) {
@@ -106,8 +109,8 @@ class RoadsPlacer {
     return key;
   }
 
-  PlacedRoad place(std::uint32_t road, double most_m = 1e300) const {
-    const auto known = memory_.placed.find(key(road));
+  PlacedRoad place(std::uint32_t road, const PlaceKey& key, double most_m) const {
+    const auto known = memory_.placed.find(key);
     if (known != memory_.placed.end()) return known->second;
     return place_road(road_map_, plan_.roads[road], borders_[road],
                       {line(2 * road), line(2 * road + 1)}, most_m);
@@ -127,7 +130,7 @@ class RoadsPlacer {
     std::vector<PlacedRoad> placed;
     for (std::size_t i = 0; i < roads.size() && left_m >= 0.0; ++i) {
       left_m += at_least_m[i];
-      placed.push_back(place(roads[i], left_m + kRounding_m));
+      placed.push_back(place(roads[i], keys[i], left_m + kRounding_m));
       memory_.faults_m[keys[i]] = placed.back().fault_m;
       left_m -= placed.back().fault_m;
     }

@@ -97,7 +97,8 @@ inline double drivable_length_m(const RoadMap& road_map) {
   return sum_m;
 }
 
-inline void expect_comes_back(const RoadMap& before, int minor) {
+// @param least_share  of the drivable lanes' length, which borders out of line may cut.
+inline void expect_comes_back(const RoadMap& before, int minor, double least_share = 0.99) {
   const opendrive::OpenDriveFile file = file_of(before, minor);
   EXPECT_LE(file.largest_error_m, 0.01);
   const RoadMap after = parse_map(file.bytes, "written.xodr");
@@ -105,7 +106,7 @@ inline void expect_comes_back(const RoadMap& before, int minor) {
   EXPECT_LE(borders_apart_m(before, after), 0.01);
   EXPECT_EQ(lost_links(before, after), 0);
   EXPECT_NEAR(drivable_length_m(after), drivable_length_m(before),
-              0.01 * drivable_length_m(before));
+              (1.0 - least_share) * drivable_length_m(before));
 }
 
 // Errors that `validate` finds in what is written.
