@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/audit/surface_audit.h"
+#include "roadbed/planning/audit/surface/surface_audit.h"
 #include "roadbed/planning/audit/swept_drive.h"
 #include "roadbed/tests/support/real_data.h"
 

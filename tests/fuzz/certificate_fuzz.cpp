@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/planning/audit/check/certificate_check.h"
 #include "roadbed/tools/audit/certificate_file_check.h"
 #include "roadbed/tools/audit/certificate_json.h"
 

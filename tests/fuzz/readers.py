@@ -11,7 +11,7 @@ CORPUS = ROOT / "tests/fuzz/corpus"
 SOURCES = {
     "argoverse": r"map/argoverse/",
     "autoware_vehicle": r"tools/files/(autoware_vehicle|vehicle_file)",
-    "certificate": r"tools/audit/certificate_json|planning/audit/certificate_check",
+    "certificate": r"tools/audit/certificate_json|planning/audit/check/certificate_check",
     "cloud_message": r"map/logs/cloud_message"
                      r"|map/occupancy/clouds/(message_points|point_time|sweep_poses)",
     "common_road": r"map/commonroad/(document|lanes|links|read|scenario|traffic_rules"

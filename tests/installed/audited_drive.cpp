@@ -4,7 +4,7 @@
 #include <roadbed/map/load_map.h>
 #include <roadbed/map/occupancy/octree/tiled_occupancy.h>
 #include <roadbed/planning/audit/audit_drive.h>
-#include <roadbed/planning/audit/certificate_check.h>
+#include <roadbed/planning/audit/check/certificate_check.h>
 #include <roadbed/planning/reference/reference_line.h>
 #include <roadbed/planning/route/router.h>
 

@@ -19,7 +19,7 @@
 #include "roadbed/map/occupancy/ground/drive_ground.h"
 #include "roadbed/map/occupancy/ground/ground.h"
 #include "roadbed/map/occupancy/octree/tiled_occupancy.h"
-#include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/planning/audit/check/certificate_check.h"
 #include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/audited_drive.h"
 #include "roadbed/tools/audit/certificate_json.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "roadbed/map/occupancy/ground/drive_ground.h"
-#include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/planning/audit/check/certificate_check.h"
 
 namespace roadbed::tools::inline audit {
 namespace {

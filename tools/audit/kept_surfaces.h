@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "roadbed/geometry/polygons/ring.h"
-#include "roadbed/planning/audit/road_surface.h"
+#include "roadbed/planning/audit/surface/road_surface.h"
 
 namespace roadbed::tools::inline audit {
 

@@ -10,7 +10,7 @@
 
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/model/road_map.h"
-#include "roadbed/planning/audit/surface_audit.h"
+#include "roadbed/planning/audit/surface/surface_audit.h"
 #include "roadbed/planning/rules/rule_audit.h"
 #include "roadbed/tools/audit/kept_surfaces.h"
 #include "roadbed/tools/cli/inputs.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "roadbed/planning/audit/surface_check.h"
+#include "roadbed/planning/audit/check/surface_check.h"
 #include "roadbed/tools/audit/certificate_values.h"
 
 namespace roadbed::tools::inline audit {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/planning/audit/surface_audit.h"
+#include "roadbed/planning/audit/surface/surface_audit.h"
 #include "roadbed/tools/audit/certified_file.h"
 #include "roadbed/tools/audit/road_audit.h"
 #include "roadbed/tools/files/json.h"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "roadbed/planning/audit/farthest_off.h"
-#include "roadbed/planning/audit/surface_audit.h"
+#include "roadbed/planning/audit/surface/farthest_off.h"
+#include "roadbed/planning/audit/surface/surface_audit.h"
 
 namespace roadbed::tools::inline simulation {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
-#include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/planning/audit/check/certificate_check.h"
 #include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tests/support/random_drive.h"
 

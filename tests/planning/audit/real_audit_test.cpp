@@ -8,7 +8,7 @@
 
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/planning/audit/certificate.h"
-#include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/planning/audit/check/certificate_check.h"
 #include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tests/support/brute_force_distance.h"
 #include "roadbed/tests/support/random_drive.h"

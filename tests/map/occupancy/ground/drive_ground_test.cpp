@@ -10,7 +10,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
-#include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/planning/audit/check/certificate_check.h"
 #include "roadbed/planning/audit/vehicle_audit.h"
 
 namespace roadbed::planning {

@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/brute_force_movers.h"
+#include "roadbed/planning/audit/check/brute_force_movers.h"
 
 #include <algorithm>
 #include <cmath>

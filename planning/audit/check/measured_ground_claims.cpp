@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/planning/audit/check/certificate_check.h"
 
 #include <fmt/format.h>
 

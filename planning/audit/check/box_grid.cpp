@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/box_grid.h"
+#include "roadbed/planning/audit/check/box_grid.h"
 
 #include <algorithm>
 #include <cmath>

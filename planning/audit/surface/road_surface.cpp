@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/road_surface.h"
+#include "roadbed/planning/audit/surface/road_surface.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "roadbed/map/derived/surface.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/index/road_map_index.h"
-#include "roadbed/planning/audit/drive_level.h"
+#include "roadbed/planning/audit/surface/drive_level.h"
 
 namespace roadbed::planning::inline audit {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
-#include "roadbed/planning/audit/body_outline.h"
+#include "roadbed/planning/audit/check/body_outline.h"
 
 namespace roadbed::planning::inline audit {
 

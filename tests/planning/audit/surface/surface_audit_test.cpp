@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/surface_audit.h"
+#include "roadbed/planning/audit/surface/surface_audit.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/audit/surface_check.h"
+#include "roadbed/planning/audit/check/surface_check.h"
 #include "roadbed/planning/audit/swept_drive.h"
 #include "roadbed/tests/support/bent_lanes.h"
 #include "roadbed/tests/support/random_drive.h"

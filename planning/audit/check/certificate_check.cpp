@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/planning/audit/check/certificate_check.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,8 @@
 #include <string_view>
 #include <utility>
 
-#include "roadbed/planning/audit/brute_force_movers.h"
-#include "roadbed/planning/audit/brute_force_obstacles.h"
+#include "roadbed/planning/audit/check/brute_force_movers.h"
+#include "roadbed/planning/audit/check/brute_force_obstacles.h"
 
 namespace roadbed::planning::inline audit {
 namespace {

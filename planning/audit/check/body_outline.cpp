@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/body_outline.h"
+#include "roadbed/planning/audit/check/body_outline.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/polygons/ring.h"
-#include "roadbed/planning/audit/surface_audit.h"
+#include "roadbed/planning/audit/surface/surface_audit.h"
 
 namespace roadbed::planning::inline audit {
 

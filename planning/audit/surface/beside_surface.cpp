@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/beside_surface.h"
+#include "roadbed/planning/audit/surface/beside_surface.h"
 
 #include <fmt/format.h>
 

@@ -8,9 +8,9 @@
 #include "roadbed/geometry/motion/body_part.h"
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/planning/audit/audit_report.h"
-#include "roadbed/planning/audit/beside_surface.h"
 #include "roadbed/planning/audit/proven_span.h"
-#include "roadbed/planning/audit/road_surface.h"
+#include "roadbed/planning/audit/surface/beside_surface.h"
+#include "roadbed/planning/audit/surface/road_surface.h"
 
 namespace roadbed::planning::inline audit {
 

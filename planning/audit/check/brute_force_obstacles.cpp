@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/brute_force_obstacles.h"
+#include "roadbed/planning/audit/check/brute_force_obstacles.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/surface_audit.h"
+#include "roadbed/planning/audit/surface/surface_audit.h"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "roadbed/planning/audit/edge_probe.h"
-#include "roadbed/planning/audit/farthest_off.h"
 #include "roadbed/planning/audit/least_clearance.h"
 #include "roadbed/planning/audit/near_stretches.h"
 #include "roadbed/planning/audit/proven_cover.h"
+#include "roadbed/planning/audit/surface/edge_probe.h"
+#include "roadbed/planning/audit/surface/farthest_off.h"
 
 namespace roadbed::planning::inline audit {
 namespace {

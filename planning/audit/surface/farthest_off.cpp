@@ -1,9 +1,9 @@
-#include "roadbed/planning/audit/farthest_off.h"
+#include "roadbed/planning/audit/surface/farthest_off.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "roadbed/planning/audit/road_surface.h"
+#include "roadbed/planning/audit/surface/road_surface.h"
 
 namespace roadbed::planning::inline audit {
 namespace {

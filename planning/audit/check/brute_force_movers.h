@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/planning/audit/brute_force_obstacles.h"
+#include "roadbed/planning/audit/check/brute_force_obstacles.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 
 namespace roadbed::planning::inline audit {

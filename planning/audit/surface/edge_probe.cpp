@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/edge_probe.h"
+#include "roadbed/planning/audit/surface/edge_probe.h"
 
 #include <algorithm>
 

@@ -12,8 +12,8 @@
 
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
-#include "roadbed/planning/audit/body_outline.h"
-#include "roadbed/planning/audit/box_grid.h"
+#include "roadbed/planning/audit/check/body_outline.h"
+#include "roadbed/planning/audit/check/box_grid.h"
 
 namespace roadbed::planning::inline audit {
 

@@ -1,11 +1,11 @@
-#include "roadbed/planning/audit/drive_level.h"
+#include "roadbed/planning/audit/surface/drive_level.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "roadbed/planning/audit/surface_audit.h"
+#include "roadbed/planning/audit/surface/surface_audit.h"
 #include "roadbed/tests/support/made_maps.h"
 
 namespace roadbed::planning {

@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/drive_level.h"
+#include "roadbed/planning/audit/surface/drive_level.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/surface_check.h"
+#include "roadbed/planning/audit/check/surface_check.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "roadbed/planning/audit/body_outline.h"
+#include "roadbed/planning/audit/check/body_outline.h"
 
 namespace roadbed::planning::inline audit {
 namespace {
