@@ -12,6 +12,7 @@
 
 #include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/untrusted_sqlite.h"
 #include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/lane_table/table.h"
 
@@ -114,9 +115,10 @@ class Database {
                               static_cast<sqlite3_int64>(bytes.size()),
                               static_cast<sqlite3_int64>(bytes.size()),
                               SQLITE_DESERIALIZE_READONLY));
-    sqlite3_db_config(opened, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-    sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-    sqlite3_progress_handler(opened, kSteps, spend, &steps_);
+    distrust(opened, bytes.size(), steps_);
+    if (has_generated_columns(opened)) {
+      throw Refusal{"a column that computes its values", "columns that hold them"};
+    }
   }
 
   /// Calls `row(statement)` for every row of an answer.
@@ -145,12 +147,7 @@ class Database {
     void operator()(sqlite3* database) const { sqlite3_close(database); }
   };
 
-  static constexpr int kSteps = 1000;           // of SQLite, between two looks at the budget
   static constexpr std::size_t kLeastRow = 64;  // bytes, with its shape
-
-  static int spend(void* budget) {
-    return static_cast<geometry::WorkBudget*>(budget)->spend(kSteps) ? 0 : 1;
-  }
 
   // Pages that several branches of a damaged tree name are rows without end.
   void count(sqlite3_stmt* row) {

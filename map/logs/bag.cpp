@@ -10,6 +10,7 @@
 
 #include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/untrusted_sqlite.h"
 #include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/logs/containers.h"
 #include "roadbed/map/logs/message_unpacker.h"
@@ -36,22 +37,12 @@ class BagReader {
         unread_(size),
         unpacker_(name_, size),
         visitor_(visitor) {
-    // A file of others may hold views, triggers and columns that compute; none of it is run.
-    sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-    sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-    sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
-    const std::uint64_t most = std::min<std::uint64_t>(std::max<std::uint64_t>(size, 1 << 20),
-                                                       std::numeric_limits<int>::max());
-    sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH, static_cast<int>(most));
-    constexpr int often = 1000;
-    const auto spend = [](void* steps) {
-      return static_cast<geometry::WorkBudget*>(steps)->spend(often) ? 0 : 1;
-    };
-    sqlite3_progress_handler(database_.get(), often, spend, &steps_);
+    distrust(database_.get(), size, steps_);
   }
 
   void run() {
     std::map<std::int64_t, LogTopic> topics;
+    if (has_generated_columns(database_.get())) refuse("", "a column that computes its values");
     const Statement of_topics = prepared("select id, name, type, serialization_format from topics");
     while (step(of_topics)) {
       count({bytes_of(of_topics, 1), bytes_of(of_topics, 2), bytes_of(of_topics, 3)});

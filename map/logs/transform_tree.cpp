@@ -10,6 +10,8 @@
 namespace roadbed::map::inline logs {
 namespace {
 
+constexpr std::size_t kMostFrames = 256;  // on a way up, which is gone for each message
+
 std::vector<LogGap> gaps_of(const std::vector<TimedPose>& poses) {
   std::vector<std::int64_t> times_ns;
   for (const TimedPose& pose : poses) times_ns.push_back(pose.stamp_ns);
@@ -69,6 +71,9 @@ std::vector<std::string> TransformTree::way_up(const std::string& child, const s
        edge = edges_.find(frame)) {
     way.push_back(frame);
     if (way.size() > edges_.size()) refuse(child, "stands in itself", "frames without a circle");
+    if (way.size() > kMostFrames) {
+      refuse(child, fmt::format("stands in more than {} frames", kMostFrames), "a shorter chain");
+    }
     const auto& [parent, other] = std::tie(edge->second.parent, edge->second.other_parent);
     if (!other.empty()) refuse(frame, "stands in " + parent + " and in " + other, "one parent");
     frame = parent;

@@ -47,7 +47,8 @@ class TransformTree {
   /// From a frame up to `top`, to `map` or to the uppermost frame: names of the children on the
   /// way.
   /// @param file    and `option`, which chooses a topic, are for messages.
-  /// @throws InputError if a frame on it has two parents, or they stand in each other in a circle.
+  /// @throws InputError if a frame on it has two parents, they stand in each other in a circle, or
+  ///         there are more than 256.
   std::vector<std::string> way_up(const std::string& child, const std::string& file,
                                   const std::string& option, const std::string& top = "map") const;
 

@@ -148,4 +148,18 @@ void write_output(const std::filesystem::path& file, std::string_view bytes, boo
   output.commit();
 }
 
+void OutputFiles::add(const std::filesystem::path& file, std::string bytes) {
+  if (is_standard_stream(file)) {
+    to_standard_output_ += bytes;
+    return;
+  }
+  files_.push_back(std::make_unique<OutputFile>(file, force_));
+  files_.back()->write(0, bytes);
+}
+
+void OutputFiles::commit() {
+  for (const auto& file : files_) file->commit();
+  if (!to_standard_output_.empty()) write_to_standard_output(to_standard_output_);
+}
+
 }  // namespace roadbed::map::storage

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "roadbed/map/storage/chunked_file.h"
 #include "roadbed/map/storage/output_place.h"
@@ -52,5 +54,24 @@ void write_to_standard_output(std::string_view bytes);
 /// Writes a whole file in that way; to standard output where it is `-`.
 /// @throws OutputError if it cannot be written; nothing is left behind then.
 void write_output(const std::filesystem::path& file, std::string_view bytes, bool force);
+
+/// Files of one answer: all are written before the first is put in place, so that a disk that is
+/// full leaves none.
+class OutputFiles {
+ public:
+  explicit OutputFiles(bool force) : force_(force) {}
+
+  /// @param file  `-` is standard output, in its turn at the commit.
+  /// @throws OutputError if it cannot be written.
+  void add(const std::filesystem::path& file, std::string bytes);
+
+  /// @throws OutputError as OutputFile does.
+  void commit();
+
+ private:
+  bool force_;
+  std::vector<std::unique_ptr<OutputFile>> files_;
+  std::string to_standard_output_;
+};
 
 }  // namespace roadbed::map::storage

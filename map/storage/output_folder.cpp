@@ -1,14 +1,17 @@
 #include "roadbed/map/storage/output_folder.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "roadbed/map/storage/output_file.h"
@@ -92,6 +95,27 @@ bool carry_over(const fs::path& from, const fs::path& to,
   return !error;
 }
 
+bool is_still_there(const fs::path& folder, int descriptor) {
+  struct stat opened {
+  }, named{};
+  return ::fstat(descriptor, &opened) == 0 && ::lstat(folder.c_str(), &named) == 0 &&
+         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+/// Descriptor of the folder that is there, locked; less than 0 if somebody else keeps it locked.
+int locked_folder(const fs::path& folder) {
+  constexpr int kTries = 300;
+  for (int i = 0; i < kTries; ++i) {
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return -1;
+    const bool is_locked = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+    if (is_locked && is_still_there(folder, descriptor)) return descriptor;
+    ::close(descriptor);
+    if (!is_locked) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return -1;
+}
+
 }  // namespace
 
 void make_output_folder(const fs::path& folder, bool force) {
@@ -120,11 +144,11 @@ const fs::path& OutputFolder::in_the_making() {
   hidden_ = take_name(name_beside_or_in(), [this](const fs::path& name) {
     if (::mkdir(name.c_str(), 0777) != 0) return false;
     descriptor_ = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor_ >= 0 && lock_in_the_making(descriptor_)) return true;
-    const int cause = descriptor_ < 0 ? errno : EAGAIN;
+    const bool is_locked = descriptor_ >= 0 && lock_in_the_making(descriptor_);
+    if (is_locked && is_still_there(name, descriptor_)) return true;
+    const bool is_gone = descriptor_ >= 0 || errno == ENOENT;  // who had the lock removes it
     if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
-    ::rmdir(name.c_str());
-    errno = cause;
+    if (is_gone) errno = EAGAIN;
     return false;
   });
   return hidden_;
@@ -132,8 +156,11 @@ const fs::path& OutputFolder::in_the_making() {
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
-  if (!hidden_.empty()) fs::remove_all(hidden_, ignored);
-  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!hidden_.empty() && (!has_exchanged_ || old_descriptor_ >= 0))
+    fs::remove_all(hidden_, ignored);
+  for (const int descriptor : {descriptor_, old_descriptor_}) {
+    if (descriptor >= 0) ::close(descriptor);
+  }
   for (const fs::path& parent : made_parents_) fs::remove(parent, ignored);  // if it is empty
 }
 
@@ -235,9 +262,15 @@ void OutputFolder::exchange() {
                 "look at them, and run again");
 }
 
-bool OutputFolder::exchange_names() const {
-  return ::renameat2(AT_FDCWD, hidden_.c_str(), AT_FDCWD, place_.path.c_str(), RENAME_EXCHANGE) ==
-         0;
+/// Only who has the folder locked that is in the place exchanges it: one writer after the other,
+/// and under its hidden name the old one is not taken for abandoned.
+bool OutputFolder::exchange_names() {
+  if (old_descriptor_ < 0) old_descriptor_ = locked_folder(place_.path);
+  if (::renameat2(AT_FDCWD, hidden_.c_str(), AT_FDCWD, place_.path.c_str(), RENAME_EXCHANGE) != 0) {
+    return false;
+  }
+  has_exchanged_ = !has_exchanged_;
+  return true;
 }
 
 void OutputFolder::put_files_one_by_one() {

@@ -59,15 +59,17 @@ class OutputFolder {
   void check_inputs() const;
   void keep_permissions_of_files() const;
   void exchange();
-  bool exchange_names() const;
+  bool exchange_names();
   void put_files_one_by_one();
 
   OutputPlace place_;
   OutputFolderOptions options_;
   std::vector<std::filesystem::path> made_parents_;  // the outermost last
   std::filesystem::path hidden_;
-  int descriptor_ = -1;  // of the hidden folder, locked
+  int descriptor_ = -1;      // of the folder in the making, locked
+  int old_descriptor_ = -1;  // of the one that it replaces, locked too while that is hidden
   bool is_beside_ = true;
+  bool has_exchanged_ = false;      // the hidden name is the old folder's
   std::vector<std::string> names_;  // in the order in which they were written
 };
 

@@ -1,8 +1,13 @@
 #include "roadbed/planning/tracking/assignment.h"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <set>
+#include <tuple>
+#include <utility>
 
 namespace roadbed::planning::inline tracking {
 namespace {
@@ -92,36 +97,52 @@ class Numbers {
   std::vector<std::size_t> names_;
 };
 
-}  // namespace
+using Given = std::vector<std::optional<std::size_t>>;
 
-std::vector<std::optional<std::size_t>> assign(std::size_t rows, std::size_t columns,
-                                               const std::vector<PossiblePair>& pairs,
-                                               double cost_of_none) {
-  std::vector<std::optional<std::size_t>> column_of(rows);
-  std::vector<int> of_row(rows, 0), of_column(columns, 0);
+/// Pairs that have a row or a column in common with another one of them, and those apart from all
+/// others. Rows come first in the forest, columns behind them.
+std::vector<std::vector<PossiblePair>> in_groups(std::size_t rows, std::size_t columns,
+                                                 const std::vector<PossiblePair>& pairs) {
+  std::vector<std::size_t> above(rows + columns);
+  std::iota(above.begin(), above.end(), std::size_t{0});
+  const auto root = [&](std::size_t node) {
+    while (above[node] != node) node = above[node] = above[above[node]];
+    return node;
+  };
+  for (const PossiblePair& pair : pairs) above[root(pair.row)] = root(rows + pair.column);
+  std::map<std::size_t, std::vector<PossiblePair>> groups;
+  for (const PossiblePair& pair : pairs) groups[root(pair.row)].push_back(pair);
+  std::vector<std::vector<PossiblePair>> all;
+  for (auto& [at, group] : groups) all.push_back(std::move(group));
+  return all;
+}
+
+/// The cheapest first.
+void take_cheapest(std::vector<PossiblePair> pairs, std::size_t columns, Given& column_of) {
+  std::ranges::sort(pairs, {}, [](const PossiblePair& pair) {
+    return std::tuple(pair.cost, pair.row, pair.column);
+  });
+  std::vector<bool> is_taken(columns, false);
   for (const PossiblePair& pair : pairs) {
-    ++of_row[pair.row];
-    ++of_column[pair.column];
+    if (column_of[pair.row] || is_taken[pair.column]) continue;
+    column_of[pair.row] = pair.column;
+    is_taken[pair.column] = true;
   }
-  std::vector<PossiblePair> contested;
+}
+
+void take_least_sum(const std::vector<PossiblePair>& pairs, double cost_of_none, Given& column_of) {
   Numbers row_numbers, column_numbers;
   for (const PossiblePair& pair : pairs) {
-    if (of_row[pair.row] == 1 && of_column[pair.column] == 1) {
-      column_of[pair.row] = pair.column;
-      continue;
-    }
-    contested.push_back(pair);
     row_numbers.of(pair.row);
     column_numbers.of(pair.column);
   }
-  if (contested.empty()) return column_of;
   // Every row may also have a column of its own that stands for none.
   const auto own = static_cast<Eigen::Index>(column_numbers.names().size());
   const auto count = static_cast<Eigen::Index>(row_numbers.names().size());
   const double never = cost_of_none * static_cast<double>(count + 1) + 1.0;
   Eigen::MatrixXd costs = Eigen::MatrixXd::Constant(count, own + count, never);
   costs.rightCols(count).diagonal().setConstant(cost_of_none);
-  for (const PossiblePair& pair : contested) {
+  for (const PossiblePair& pair : pairs) {
     costs(static_cast<Eigen::Index>(row_numbers.of(pair.row)),
           static_cast<Eigen::Index>(column_numbers.of(pair.column))) = pair.cost;
   }
@@ -129,6 +150,29 @@ std::vector<std::optional<std::size_t>> assign(std::size_t rows, std::size_t col
   for (std::size_t i = 0; i < found.size(); ++i) {
     const bool is_real = found[i] < column_numbers.names().size();
     if (is_real) column_of[row_numbers.names()[i]] = column_numbers.names()[found[i]];
+  }
+}
+
+std::size_t rows_of(const std::vector<PossiblePair>& pairs) {
+  std::set<std::size_t> rows;
+  for (const PossiblePair& pair : pairs) rows.insert(pair.row);
+  return rows.size();
+}
+
+}  // namespace
+
+Given assign(std::size_t rows, std::size_t columns, const std::vector<PossiblePair>& pairs,
+             double cost_of_none) {
+  constexpr std::size_t kMostRows = 100;
+  Given column_of(rows);
+  for (const std::vector<PossiblePair>& group : in_groups(rows, columns, pairs)) {
+    if (group.size() == 1) {
+      column_of[group.front().row] = group.front().column;
+    } else if (rows_of(group) > kMostRows) {
+      take_cheapest(group, columns, column_of);
+    } else {
+      take_least_sum(group, cost_of_none, column_of);
+    }
   }
   return column_of;
 }

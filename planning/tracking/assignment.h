@@ -12,8 +12,9 @@ struct PossiblePair {
 };
 
 /// Gives rows columns, each column to one row at most, at the least sum of costs; a row without a
-/// column costs `cost_of_none`. The shortest augmenting paths of [Jonker, Volgenant 1987,
-/// doi:10.1007/BF02278710], O(rows² · columns) of those that more than one may have.
+/// column costs `cost_of_none`. Each group that no pair leads out of is settled by itself, by the
+/// shortest augmenting paths of [Jonker, Volgenant 1987, doi:10.1007/BF02278710], O(rows² ·
+/// columns); one of more than 100 rows the cheapest pair first, O(pairs log pairs).
 /// @returns per row its column.
 std::vector<std::optional<std::size_t>> assign(std::size_t rows, std::size_t columns,
                                                const std::vector<PossiblePair>& pairs,

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -14,6 +16,7 @@ namespace {
 
 constexpr double kRemembered_s = 1.0;
 constexpr double kSlotRests_s = 10.0;
+constexpr std::ptrdiff_t kMostFits = 16;  // of a track, in a crowd
 
 void refuse_twice(std::span<const Detection> detections) {
   std::set<std::string_view> ids;
@@ -77,11 +80,17 @@ void Tracker::give_by_fit(std::span<const Detection> detections, bool to_tentati
   for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
     if (!slots_[slot] || slots_[slot]->has_own_id) continue;
     if (slots_[slot]->is_tentative() != to_tentative) continue;
+    std::vector<PossiblePair> fits;
     for (std::size_t i = 0; i < detections.size(); ++i) {
       if (!detections[i].id.empty() || is_taken[i]) continue;
       const double misfit = slots_[slot]->filter.misfit(measured(detections[i]));
-      if (misfit <= options_.misfit_limit) pairs.push_back({slot, i, misfit});
+      if (misfit <= options_.misfit_limit) fits.push_back({slot, i, misfit});
     }
+    if (std::ssize(fits) > kMostFits) {
+      std::ranges::nth_element(fits, fits.begin() + kMostFits, {}, &PossiblePair::cost);
+      fits.resize(static_cast<std::size_t>(kMostFits));
+    }
+    pairs.insert(pairs.end(), fits.begin(), fits.end());
   }
   const auto given = assign(slots_.size(), detections.size(), pairs, options_.misfit_limit);
   for (std::size_t slot = 0; slot < given.size(); ++slot) {

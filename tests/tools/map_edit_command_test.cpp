@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -86,6 +87,19 @@ TEST(MapTileCommand, GivesTilesThatMergeToTheWhole) {
   ASSERT_EQ(run_roadbed(words).status, 0);
   const ProgramRun diff = run_roadbed({"map", "diff", kTown, whole});
   EXPECT_EQ(diff.out, "0 changes\n");
+}
+
+TEST(MapTileCommand, LeavesNoTileOfAnotherTiling) {
+  const TemporaryFolder folder;
+  const std::string tiles = folder / "tiles", fresh = folder / "fresh";
+  ASSERT_EQ(run_roadbed({"map", "tile", kTown, "300", "-o", tiles}).status, 0);
+  folder.write("tiles/notes_1.txt", "mine");
+  ASSERT_EQ(run_roadbed({"map", "tile", kTown, "250", "-o", tiles, "--force"}).status, 0);
+  ASSERT_EQ(run_roadbed({"map", "tile", kTown, "250", "-o", fresh}).status, 0);
+  auto expected = files_below(fresh);
+  expected.push_back("notes_1.txt");
+  std::ranges::sort(expected);
+  EXPECT_EQ(files_below(tiles), expected);
 }
 
 TEST(MapMergeCommand, WritesDownWhatGotAnotherId) {

@@ -42,6 +42,11 @@ void refuse_standard_input(const Job& job, const JsonNode& node) {
 
 bool is_scalar(const json& value) { return value.is_string() || value.is_number(); }
 
+bool holds_zero_byte(const json& value) {
+  if (value.is_array()) return std::ranges::any_of(value, holds_zero_byte);
+  return value.is_string() && value.get_ref<const std::string&>().find('\0') != std::string::npos;
+}
+
 void check_value(const ArgumentInfo& argument, const JsonNode& node) {
   const json& value = node.value();
   if (argument.kind == ArgumentInfo::Kind::flag) {
@@ -49,6 +54,7 @@ void check_value(const ArgumentInfo& argument, const JsonNode& node) {
     node.refuse(fmt::format("is {}", value.type_name()), "true or false", "it is a flag");
   }
   const bool is_list = value.is_array() && !value.empty() && std::ranges::all_of(value, is_scalar);
+  if (holds_zero_byte(value)) node.refuse("holds a zero byte", "a text", "take it out");
   if (is_scalar(value) || is_list) return;
   node.refuse(fmt::format("is {}", value.is_array() ? "an unusable list" : value.type_name()),
               "a text, a number, or a list of them", "write one");

@@ -132,6 +132,9 @@ std::string JsonNode::text() const {
   }
   std::string text = value_->get<std::string>();
   if (text.empty()) refuse("is empty", "a text", "fill it in");
+  if (text.find('\0') != text.npos) {  // of a file's name the system would see what is before it
+    refuse("holds a zero byte", "a text", "take it out");
+  }
   return text;
 }
 

@@ -180,5 +180,18 @@ TEST(OutputFile, MayHaveTheLongestName) {
   EXPECT_EQ(tests::bytes_of(folder / name), "new");
 }
 
+TEST(OutputFiles, AreAllWrittenBeforeOneIsPutInPlace) {
+  const tests::TemporaryFolder folder;
+  const std::filesystem::path first = folder.write("first", "old");
+  OutputFiles files(true);
+  files.add(first, "new");
+  EXPECT_THROW(files.add(folder / "missing" / "second", "new"), OutputError);
+  EXPECT_EQ(tests::bytes_of(first), "old");
+  files.add(folder / "third", "new");
+  files.commit();
+  EXPECT_EQ(tests::bytes_of(first), "new");
+  EXPECT_EQ(tests::bytes_of(folder / "third"), "new");
+}
+
 }  // namespace
 }  // namespace roadbed::map

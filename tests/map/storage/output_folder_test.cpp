@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -55,6 +56,36 @@ TEST(OutputFolder, IsTheOldOneOrTheNewOneWheneverTheWriterIsKilled) {
     ASSERT_TRUE(bytes == old_bytes || bytes == new_bytes) << "round " << round << ": " << bytes;
   }
   write_all(place, "new", true);
+  EXPECT_EQ(tests::files_below(around.path()).size(), static_cast<std::size_t>(kFiles));
+}
+
+// Each under a hidden name of its own, none taken for what a killed one left.
+TEST(OutputFolder, IsWholeWhereManyWriteItAtOnce) {
+  const tests::TemporaryFolder around;
+  const fs::path place = around / "drive";
+  std::vector<pid_t> writers;
+  for (const char letter : {'a', 'b', 'c', 'd', 'e', 'f'}) {
+    const pid_t writer = ::fork();
+    ASSERT_GE(writer, 0);
+    if (writer == 0) {
+      try {
+        for (int round = 0; round < 40; ++round) write_all(place, std::string(1, letter), true);
+      } catch (const OutputError& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        ::_exit(1);
+      }
+      ::_exit(0);
+    }
+    writers.push_back(writer);
+  }
+  for (const pid_t writer : writers) {
+    int status = 0;
+    ASSERT_EQ(::waitpid(writer, &status, 0), writer);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  }
+  const std::string bytes = all_bytes(place);
+  EXPECT_EQ(bytes, std::string(kFiles, bytes[0]));
+  write_all(place, "z", true);
   EXPECT_EQ(tests::files_below(around.path()).size(), static_cast<std::size_t>(kFiles));
 }
 

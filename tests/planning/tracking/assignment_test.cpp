@@ -63,6 +63,18 @@ TEST(Assignment, CostsTheLeastOfAll) {
   }
 }
 
+// Three hundred in one place: each still has the one that fits it, and nobody two.
+TEST(Assignment, OfACrowdIsWholeAndEndsSoon) {
+  std::vector<PossiblePair> pairs;
+  for (std::size_t row = 0; row < 300; ++row) {
+    for (std::size_t column = 0; column < 300; ++column) {
+      pairs.push_back({row, column, row == column ? 0.5 : 5.0});
+    }
+  }
+  const auto given = assign(300, 300, pairs, 9.0);
+  for (std::size_t row = 0; row < 300; ++row) EXPECT_EQ(given[row], row);
+}
+
 TEST(Assignment, DoesNotTakeTheNearestFirst) {
   // Row 0 is nearest to column 0, but row 1 has no other.
   const auto given = assign(2, 2, {{0, 0, 1.0}, {0, 1, 2.0}, {1, 0, 1.5}}, 9.0);

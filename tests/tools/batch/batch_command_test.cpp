@@ -440,6 +440,18 @@ TEST(BatchCommand, LinksFilesThatOthersHaveNamedAsTheyLike) {
               HasSubstr("<a href=\"50%25%20%231%3F.txt\">50% #1?.txt</a>"));
 }
 
+// The system would read the file that is named before it.
+TEST(BatchCommand, RefusesNamesOfFilesWithAZeroByte) {
+  const TemporaryFolder folder;
+  for (const std::string job :
+       {R"({"job":"validate","inputs":["town.xodr\u0000x"]})",
+        R"({"job":"audit","inputs":[],"options":{"trajectory":"a.csv\u0000x"}})"}) {
+    const ProgramRun run = batch(folder.write("jobs.jsonl", job + "\n"), folder / "out");
+    EXPECT_EQ(run.status, 1) << run.out;
+    EXPECT_THAT(run.err, HasSubstr("holds a zero byte"));
+  }
+}
+
 TEST(BatchCommand, RefusesJobsOfADevice) {
   const TemporaryFolder folder;
   const ProgramRun run = batch("/dev/zero", folder / "out");

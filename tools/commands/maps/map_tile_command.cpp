@@ -24,6 +24,18 @@ namespace {
 
 constexpr double kMostTiles = 10'000;
 
+/// Of a tile of any tiling: X_Y and a suffix.
+bool is_tile_name(const std::string& name) {
+  const std::size_t dot = name.find('.'), bar = name.find('_');
+  if (dot == name.npos || bar > dot) return false;
+  const auto is_number = [](std::string_view text) {
+    if (text.starts_with('-')) text.remove_prefix(1);
+    return !text.empty() && text.find_first_not_of("0123456789") == text.npos;
+  };
+  const std::string_view stem = std::string_view(name).substr(0, dot);
+  return is_number(stem.substr(0, bar)) && is_number(stem.substr(bar + 1));
+}
+
 /// Which squares of the grid a map lies in.
 struct TileRange {
   long from_x = 0, to_x = 0, from_y = 0, to_y = 0;
@@ -63,7 +75,8 @@ class TileCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
-    map::OutputFolder folder(output_, {.force = force_, .inputs = common.input_files});
+    map::OutputFolder folder(
+        output_, {.force = force_, .is_dropped = is_tile_name, .inputs = common.input_files});
     const std::string name = map::input_name(input_);
     std::string bytes = map::read_file(input_);
     const TileRange range = tiles_of(map::parse_map(bytes, name), name);

@@ -225,20 +225,19 @@ class ValidateCommand : public Command {
   void write_files(const Streams& streams, const FindingReport& report) const {
     const std::string name = map::one_line(input_.filename().string());
     const std::string source = input_.generic_string();
+    map::OutputFiles files(force_);
     const auto write = [&](const std::filesystem::path& file, const auto& content) {
-      if (!file.empty()) map::write_output(file, content(), force_);
+      if (!file.empty()) files.add(file, content());
     };
     write(junit_, [&] { return findings_junit(report, name); });
     write(sarif_, [&] { return findings_sarif(report, source); });
     write(geojson_, [&] { return findings_geojson(report); });
     write(written_baseline_, [&] { return findings_json(report.validation); });
-    if (svg_.empty()) return;
-    if (report.validation.road_map) {
-      map::write_output(svg_, findings_svg(report), force_);
-    } else {
-      fmt::print(streams.err, "roadbed: {} is not written, since there is no map to draw\n",
-                 svg_.string());
-    }
+    if (report.validation.road_map) write(svg_, [&] { return findings_svg(report); });
+    files.commit();
+    if (svg_.empty() || report.validation.road_map) return;
+    fmt::print(streams.err, "roadbed: {} is not written, since there is no map to draw\n",
+               svg_.string());
   }
 
   bool fails(const FindingReport& report) const {
