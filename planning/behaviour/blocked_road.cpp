@@ -78,10 +78,10 @@ std::optional<BlockedRoad::Decision> BlockedRoad::look(const View& view) {
   }
   queue_ = std::move(queue);
   if (queue_.empty() || view.t_s - since_s_ < patience_s(front_s_m)) return std::nullopt;
-  if (!reason_.empty()) return Decision{reason_, false, std::nullopt};
+  if (!reason_.empty()) return Decision{reason_, false, std::nullopt, queue_};
   DetourAnswer answer = ask(view);
   reason_ = describe(view, answer);
-  return Decision{reason_, true, std::move(answer.detour)};
+  return Decision{reason_, true, std::move(answer.detour), queue_};
 }
 
 DetourAnswer BlockedRoad::ask(const View& view) const {

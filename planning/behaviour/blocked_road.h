@@ -36,6 +36,7 @@ class BlockedRoad {
     std::string reason;            ///< who blocks, and which way round there is, or why none
     bool is_news;                  ///< it was asked for in this cycle
     std::optional<Detour> detour;  ///< to be taken; only in that cycle
+    std::vector<std::size_t> blockers = {};  ///< who has not moved
   };
 
   BlockedRoad(const geometry::VehicleShape& vehicle, const DrivingOptions& driving,

@@ -195,6 +195,7 @@ SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead
                                      .walkers = q.walkers,
                                      .creep_mps = right_of_way_.creep_mps()},
                                     decision_options_);
+  answer.set.speed_mps = std::min(answer.set.speed_mps, pulling_out_mps(q));
   const std::optional<double>& most_mps = q.passing.in_lane.most_mps;
   if (most_mps && *most_mps < answer.set.speed_mps) {
     answer.set = {.speed_mps = *most_mps, .acceleration_mps2 = 0.0};
@@ -207,6 +208,19 @@ SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead
     answer.reason = merging.reason;
   }
   return answer;
+}
+
+/// From rest a path may bend as sharply as the wheels can be turned there, and is driven as slowly.
+double CruiseLaw::pulling_out_mps(const Question& q) const {
+  constexpr double kSlow_mps = 5.0, kLook_m = 4.0, kLook_s = 1.0, kLeast_mps = 0.5;
+  constexpr BendLimits kWithRoomToSteer{.max_lateral_acceleration_mps2 = 2.0,
+                                        .steering_rate_fraction = 0.4};
+  const double speed_mps = q.view.measured.speed_mps;
+  if (speed_mps > kSlow_mps) return std::numeric_limits<double>::infinity();
+  const PathProfile ahead =
+      sample_path_profile(q.replanner().expected_path(), q.replanner().s_m(),
+                          kLook_m + kLook_s * speed_mps, q.on.ceiling, vehicle_, kWithRoomToSteer);
+  return std::max(kLeast_mps, *std::ranges::min_element(ahead.most_mps));
 }
 
 /// How far the kept path goes when nothing is feasible. A lead on it bounds the speed by itself, or

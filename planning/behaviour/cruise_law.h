@@ -27,6 +27,7 @@ struct PassingDecision {
   WithinLanePassing within_lane = {};
   Merging::Decision merging = {};
   LettingIn::Decision letting_in = {};
+  bool is_blocked = false;  ///< by somebody who has not moved for long
 };
 
 /// The speed of a vehicle that follows its path to a place: set speed, speed controller behind
@@ -70,6 +71,7 @@ class CruiseLaw {
   std::optional<double> seen_ahead_m(const Question& q) const;
   void brake_for_no_path(const Question& q, const std::optional<Lead>& lead,
                          const std::optional<StopConstraint>& halt, PlannerCommand& command);
+  double pulling_out_mps(const Question& q) const;
   std::optional<double> path_left_m(const Question& q, const std::optional<Lead>& lead,
                                     const std::optional<StopConstraint>& halt) const;
   double kept_gap_m(double speed_mps) const;

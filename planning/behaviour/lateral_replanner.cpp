@@ -14,7 +14,7 @@
 namespace roadbed::planning::inline behaviour {
 namespace {
 
-constexpr double kReturn_m = 20.0;
+constexpr double kLeastReturn_m = 20.0, kReturn_mps2 = 1.5;  // back to the line, and to the side
 constexpr double kFineGrid_m = 0.2;
 constexpr double kCoarseGrid_m = 0.6;  // between ends of what is tried after the first plan
 constexpr double kDrawnStep_m = 0.5;   // of a kept drive
@@ -24,10 +24,24 @@ constexpr double kHeldOffset_m = 1.2;  // more is another lane, or partly
 constexpr double kLeastKnot_m = 0.2, kMostSlope = 1.5;
 constexpr double kSettle_m = 15.0, kSettle_s = 2.0;  // the longer of the two, past the last knot
 
-/// 1 up to `from`, 0 from `from` + kReturn_m on.
-double fade(double s_m, double from_m) {
-  const double fraction = std::clamp((s_m - from_m) / kReturn_m, 0.0, 1.0);
-  return 1.0 - fraction * fraction * (3.0 - 2.0 * fraction);
+/// The way that leads back from an offset at a speed. The quintic's second derivative is at most
+/// 10/√3 of the offset over the square of its length.
+double return_m(double offset_m, double speed_mps) {
+  const double most = 10.0 / std::sqrt(3.0);
+  return std::max(kLeastReturn_m, speed_mps * std::sqrt(most * std::abs(offset_m) / kReturn_mps2));
+}
+
+/// The offset times 1 up to `from_m`, 0 from `over_m` later on, with its derivatives.
+LateralState faded(LateralState lateral, double from_m, double over_m) {
+  const double u = std::clamp((lateral.s_m - from_m) / over_m, 0.0, 1.0);
+  const double f = 1.0 - u * u * u * (10.0 - u * (15.0 - 6.0 * u));
+  const double f_d1 = -30.0 * u * u * (1.0 - u) * (1.0 - u) / over_m;
+  const double f_d2 = -60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / (over_m * over_m);
+  lateral.d_curvature_per_m =
+      f * lateral.d_curvature_per_m + 2.0 * f_d1 * lateral.d_slope + f_d2 * lateral.d_m;
+  lateral.d_slope = f * lateral.d_slope + f_d1 * lateral.d_m;
+  lateral.d_m *= f;
+  return lateral;
 }
 
 /// The line as planning sees it: past `end_m`, where the vehicle never comes, it goes on straight
@@ -219,7 +233,8 @@ double LateralReplanner::kept_within_m(const Offsets& offsets) const {
   return std::numeric_limits<double>::infinity();
 }
 
-/// Past the plan's end its offset is held as long as the corridor is wide enough for it.
+/// Past the plan's end its offset is held as long as the corridor is wide enough for it, less the
+/// way back.
 double LateralReplanner::held_until_m(const Plan& plan) const {
   const double offset = plan.chosen->end_d_m;
   double s_m = plan.start.s_m + plan.chosen->end_l_m;
@@ -228,7 +243,7 @@ double LateralReplanner::held_until_m(const Plan& plan) const {
     const double room_m = offset > 0.0 ? corridor.left_m : corridor.right_m;
     if (std::abs(offset) + 0.5 * vehicle_.width_m > room_m) break;
   }
-  return std::max(plan.start.s_m + plan.chosen->end_l_m, s_m - kReturn_m);
+  return std::max(plan.start.s_m + plan.chosen->end_l_m, s_m - return_m(offset, speed_mps_));
 }
 
 /// Before the first plan: straight on beside the line.
@@ -248,10 +263,9 @@ PlannedPath LateralReplanner::path_of(const Proposal& proposal) const {
                        [kept = proposal.plan](double s_m) { return kept.lateral_at(s_m); });
   }
   const double held_m = held_until_m(proposal.plan);
-  return PlannedPath(reference_, [kept = proposal.plan, held_m](double s_m) {
-    LateralState lateral = kept.lateral_at(s_m);
-    lateral.d_m *= fade(s_m, held_m);
-    return lateral;
+  const double over_m = return_m(proposal.plan.chosen->end_d_m, speed_mps_);
+  return PlannedPath(reference_, [kept = proposal.plan, held_m, over_m](double s_m) {
+    return faded(kept.lateral_at(s_m), held_m, over_m);
   });
 }
 
@@ -367,10 +381,9 @@ PlannedPath LateralReplanner::expected_path_of(const Proposal& proposal) const {
 }
 
 PlannedPath LateralReplanner::led_back(const PlannedPath& path, double end_s_m) const {
-  return PlannedPath(reference_, [path, end_s_m](double s_m) {
-    LateralState lateral = path.lateral_at(s_m);
-    lateral.d_m *= fade(s_m, end_s_m);  // its slope is small enough to leave the heading alone
-    return lateral;
+  const double over_m = return_m(path.lateral_at(end_s_m).d_m, speed_mps_);
+  return PlannedPath(reference_, [path, end_s_m, over_m](double s_m) {
+    return faded(path.lateral_at(s_m), end_s_m, over_m);
   });
 }
 

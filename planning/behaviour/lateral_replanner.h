@@ -96,6 +96,7 @@ class LateralReplanner {
   /// Where the vehicle is: the start of what is proposed until the next call.
   void locate(const VehicleState& measured) {
     start_ = start_state(measured);
+    speed_mps_ = measured.speed_mps;
     cycles_.reset();
   }
 
@@ -191,7 +192,7 @@ class LateralReplanner {
   double path_end_s_m_ = 0.0;
   double checked_to_s_m_ = 0.0;
   double kept_to_s_m_ = std::numeric_limits<double>::infinity();  // in this cycle
-  double s_m_ = 0.0;
+  double s_m_ = 0.0, speed_mps_ = 0.0;
   double beyond_the_edge_m_ = 0.0;
   bool from_measurement_ = false;
   mutable std::shared_ptr<Cycles> cycles_;  ///< what was evaluated since locate()

@@ -15,7 +15,8 @@ constexpr double kPassTolerance_m = 0.25;  // more or less than asked for
 constexpr double kBehindToReturn_m = 1.0;  // overtaking given up
 constexpr double kLook_m = 0.4;            // beside the edge, at most
 constexpr double kMerging_m = 0.8;         // beside the line
-constexpr double kSetsOff_mps = 1.0, kShortEnds_m = 7.0;
+constexpr double kSetsOff_mps = 1.0, kNearRest_mps = 2.0, kShortEnds_m = 7.0;
+constexpr double kPullsOut_mps = 0.5, kPullsOut_mps2 = 1.0;
 constexpr double kNearGoal_m = 60.0, kBesideGoal_m = 0.15;
 
 constexpr std::array<Offsets, 6> kBeside{
@@ -40,6 +41,12 @@ SpeedPlan free_speed(const GoalLine& on, SpeedPlan speed) {
   speed.target_mps = on.ceiling.at(on.replanner.s_m()).speed_mps;
   if (speed.speed_mps < speed.target_mps) speed.acceleration_mps2 = kFreeSpeedUp_mps2;
   return speed;
+}
+
+SpeedPlan pulling_out(double speed_mps) {
+  return {.speed_mps = speed_mps,
+          .acceleration_mps2 = speed_mps < kPullsOut_mps ? kPullsOut_mps2 : -kPullsOut_mps2,
+          .target_mps = kPullsOut_mps};
 }
 
 bool somebody_moves_near(const Question& question) {
@@ -149,8 +156,10 @@ std::vector<PathQuery> queries_on_route(GoalLine& on, const Question& question,
     queries.push_back(look);
   }
   queries.push_back(keep);
-  // From close behind who stands no longer path leads round.
-  if (question.speed.speed_mps < kSetsOff_mps) {
+  // From close behind who stands no longer path leads round, and past who stays none at the speed
+  // of the free way.
+  if (question.speed.speed_mps < (passing.is_blocked ? kNearRest_mps : kSetsOff_mps)) {
+    if (passing.is_blocked) keep.question.speed = pulling_out(question.speed.speed_mps);
     keep.question.ends = {.least_m = kShortEnds_m, .most_m = 2.0 * kShortEnds_m};
     queries.push_back(keep);
   }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -28,6 +30,7 @@ namespace {
 
 constexpr double kStillFor_s = 3.0, kStill_m = 0.5;  // what counts as standing
 constexpr double kLookForPath_s = 3.0;               // the speed plan that lateral planning is told
+constexpr double kSettingOff_mps = 1.0, kSettingOff_mps2 = 1.0;
 
 /// The slower, the nearer: a bend of a few metres wants paths that are no longer.
 LateralReplanner::Ends ends_before_goal(double speed_mps) {
@@ -99,7 +102,21 @@ class Planner::Impl {
     kept_from_ = with_room_beside_cyclists(
         traffic_.obstacles, view.t_s, geometry::body_at(view.measured.map_from_vehicle, vehicle_),
         clearance_m_);
+    keep_parked(view.t_s);
     if (kept_from_) traffic_ = {*kept_from_};
+  }
+
+  /// Who has blocked the road stands for ever, so that a way round is looked for; until it moves.
+  void keep_parked(double t_s) {
+    std::set<std::string> parked;
+    for (std::size_t i = 0; i < task_.obstacles.size() && !parked_.empty(); ++i) {
+      const Obstacle& one = task_.obstacles[i];
+      if (!parked_.contains(one.id) || !is_standing(one, t_s)) continue;
+      parked.insert(one.id);
+      if (!kept_from_) kept_from_.emplace(task_.obstacles.begin(), task_.obstacles.end());
+      stay(t_s, (*kept_from_)[i]);
+    }
+    parked_ = std::move(parked);
   }
 
   const Visibility* sight() const { return sight_ ? &*sight_ : nullptr; }
@@ -136,7 +153,7 @@ class Planner::Impl {
     if (task_.goal) return {};
     const geometry::LinePosition at = place_on(lines_.first(), view);
     const ViewOnLine on_line{view.t_s, at, view.measured.speed_mps, traffic_, sight()};
-    PassingDecision passing;
+    PassingDecision passing{.is_blocked = !parked_.empty()};
     passing.merging = merging_.look(on_line, replanner().s_m());
     if (passing.merging.along != Merging::Along::route_line) return passing;
     passing.letting_in = letting_in_.look(on_line);
@@ -223,9 +240,13 @@ class Planner::Impl {
       const geometry::TrajectoryPoint later = obstacle.motion.at(view.t_s + kStillFor_s);
       if ((later.pose().position() - now.pose().position()).norm() > kStill_m) continue;
       obstacles.push_back(obstacle);
-      obstacles.back().motion = geometry::Trajectory({now});
+      stay(view.t_s, obstacles.back());
     }
     return obstacles;
+  }
+
+  static void stay(double t_s, Obstacle& obstacle) {
+    obstacle.motion = geometry::Trajectory({obstacle.motion.at(t_s)});
   }
 
   LateralReplanner::Question question_at(const PlannerView& view,
@@ -240,10 +261,15 @@ class Planner::Impl {
     return question;
   }
 
-  /// The last longitudinal plan as lateral planning understands it.
+  /// The last longitudinal plan as lateral planning understands it. Who stands is asked for a path
+  /// to set off along: any is feasible at rest.
   SpeedPlan speed_plan(const VehicleState& measured) const {
     const double speed = measured.speed_mps;
-    if (!task_.goal) return {speed, measured.acceleration_mps2, last_set_speed_mps_};
+    if (!task_.goal) {
+      const bool stands = std::max(speed, last_set_speed_mps_) < kSettingOff_mps;
+      if (stands) return {speed, kSettingOff_mps2, kSettingOff_mps};
+      return {speed, measured.acceleration_mps2, last_set_speed_mps_};
+    }
     double target = speed, reached_s = kLookForPath_s;
     for (const SpeedState& state : last_plan_) {
       if (state.t_s > kLookForPath_s) break;
@@ -326,6 +352,7 @@ class Planner::Impl {
                             .ahead = who_is_in_the_way(view, command),
                             .waits_for_rule = command.behaviour == Behaviour::yield});
     if (!blocked) return;
+    for (const std::size_t one : blocked->blockers) parked_.insert(traffic_.obstacles[one].id);
     command.behaviour = Behaviour::stop;
     command.reason = std::move(blocked->reason);
     command.is_news = blocked->is_news;
@@ -354,8 +381,8 @@ class Planner::Impl {
   const geometry::VehicleShape& vehicle_;
   const DrivingTask& task_;
   double clearance_m_;
-  std::optional<std::vector<Obstacle>> kept_from_;  ///< wider than they are; none: as they are
-  Traffic traffic_;                                 ///< with that room
+  std::optional<std::vector<Obstacle>> kept_from_;  ///< wider, or parked; none: as they are
+  Traffic traffic_;                                 ///< those
   std::optional<Visibility> sight_;                 ///< none: nothing is hidden
   GoalLines lines_;
   CruiseLaw cruise_;
@@ -369,6 +396,7 @@ class Planner::Impl {
   MissedLaneChange missed_change_;
   CommandGuard guard_;
   CommandHold hold_;
+  std::set<std::string> parked_;  ///< ids of those who have blocked the road
   double last_command_mps2_ = 0.0, last_set_speed_mps_ = 0.0;
   std::vector<SpeedState> last_plan_;
 };

@@ -12,6 +12,8 @@ namespace {
 
 using map::LaneId;
 
+constexpr double kStands_mps = 0.5, kAlong = 0.5;  // cosine: up to 60° from the lane
+
 double turn_over(const map::Lane& lane) {
   const double from = lane.pose_at(0.0).heading_rad;
   return std::abs(geometry::wrap_angle(lane.pose_at(lane.length_m()).heading_rad - from));
@@ -61,11 +63,13 @@ std::vector<MoverOnLane> movers_on_lane(const geometry::Polyline& lane, const Tr
     const geometry::TrajectoryPoint now = obstacle.motion.at(t_s);
     const geometry::LinePosition at = lane.project(now.pose().position());
     if (std::abs(at.d_m) > within_m) continue;
-    const double turned = now.heading_rad - lane.pose_at(at.s_m).heading_rad;
+    const double along = std::cos(now.heading_rad - lane.pose_at(at.s_m).heading_rad);
+    const double speed_mps = obstacle.is_static() ? 0.0 : now.speed_mps;
+    if (speed_mps > kStands_mps && along < kAlong) continue;
     movers.push_back({.obstacle = i,
                       .s_m = at.s_m,
                       .half_length_m = 0.5 * obstacle.length_m,
-                      .speed_mps = obstacle.is_static() ? 0.0 : now.speed_mps * std::cos(turned)});
+                      .speed_mps = speed_mps * along});
   }
   return movers;
 }

@@ -25,8 +25,9 @@ struct MoverOnLane {
   double speed_mps = 0.0;  ///< along the lane
 };
 
-/// Those whose centre is so near to a lane's middle, what stands for the whole drive included; in
-/// the traffic's order. A projection for each.
+/// Those whose centre is so near to a lane's middle and who drive along it or stand, what stands
+/// for the whole drive included; not who comes towards or crosses, where other lanes do. In the
+/// traffic's order. A projection for each.
 std::vector<MoverOnLane> movers_on_lane(const geometry::Polyline& lane, const Traffic& traffic,
                                         double t_s, double within_m);
 

@@ -12,6 +12,7 @@
 #include "roadbed/planning/behaviour/planner.h"
 #include "roadbed/planning/behaviour/route_line.h"
 #include "roadbed/planning/pilot/cruise_speed.h"
+#include "roadbed/planning/pilot/first_contact.h"
 #include "roadbed/planning/pilot/path_tracking.h"
 #include "roadbed/planning/pilot/planned_trajectory.h"
 #include "roadbed/planning/route/match_place.h"
@@ -27,6 +28,7 @@ constexpr double kAsksAgainAfter_s = 1.0;  // for a route, where there was none
 constexpr double kYellow_s = 3.0;          // how long one lasts [VwV-StVO to § 37: 3 s at 50 km/h]
 constexpr double kForLong_s = 1e6;
 constexpr double kAtGoal_m = 1.0;
+constexpr double kTurnedAway = 0.95;                // cosine, of who does not stand along its path
 constexpr double kBefore_m = 0.5, kBeside_m = 0.1;  // of who stands, for a trajectory
 
 void refuse_unusable(const PilotView& view) {
@@ -65,13 +67,13 @@ bool heads_along(const geometry::Pose2& map_from_vehicle, double heading_rad) {
 
 /// Far from it, or behind its goal, or turned around.
 /// @param near_s_m  where it was: the line may come over itself.
-bool is_away_from(const ReferenceLine& line, const geometry::Pose2& map_from_vehicle,
-                  double near_s_m) {
-  const Eigen::Vector2d here = map_from_vehicle.position();
+bool is_away_from(const ReferenceLine& line, const VehicleState& ego, double near_s_m) {
+  const Eigen::Vector2d here = ego.map_from_vehicle.position();
   const double s_m = line.project(here, near_s_m).s_m;
   const ReferencePoint foot = line.at(s_m);
-  return (here - foot.in_map).norm() > kTakenAway_m || s_m > line.goal_s_m() + kTakenAway_m ||
-         !heads_along(map_from_vehicle, foot.heading_rad);
+  const double past_goal_m = ego.speed_mps > 0.0 ? kTakenAway_m : kAtGoal_m;
+  return (here - foot.in_map).norm() > kTakenAway_m || s_m > line.goal_s_m() + past_goal_m ||
+         !heads_along(ego.map_from_vehicle, foot.heading_rad);
 }
 
 /// From the lane that fits the vehicle best of those from which there is a route.
@@ -104,7 +106,7 @@ class Pilot::Impl {
     if (!planner_) return without_route(view);
     task_->obstacles = others_.obstacles(view.ego.map_from_vehicle);
     task_->other_levels.leave_out(view.ego.map_from_vehicle, view.t_s, task_->obstacles);
-    if (has_new_light) restart();
+    if (has_new_light) find_stop_points();
     return drive(view);
   }
 
@@ -150,10 +152,8 @@ class Pilot::Impl {
 
   void keep_route(const PilotView& view) {
     if (decision_.detour) return take(*std::exchange(decision_.detour, std::nullopt));
-    if (planner_ &&
-        !is_away_from(task_->line, view.ego.map_from_vehicle, planner_->replanner().s_m())) {
-      return;
-    }
+    if (planner_ && !is_away_from(task_->line, view.ego, planner_->replanner().s_m())) return;
+    if (stands_at_goal(view.ego)) return planner_.reset();
     if (view.t_s < next_question_s_) return;
     next_question_s_ = view.t_s + kAsksAgainAfter_s;
     Found found = route_from(*setup_.road_map, view.ego.map_from_vehicle, setup_.goal);
@@ -186,14 +186,25 @@ class Pilot::Impl {
     restart();
   }
 
-  /// Where the vehicle has to wait is found anew; the plan goes on from where it is.
-  void restart() {
+  void find_stop_points() {
     task_->stop_points = stop_points(*setup_.road_map, task_->route, task_->line, task_->lights);
+  }
+
+  void restart() {
+    find_stop_points();
     planner_.emplace(PlannerSetup{.task = *task_,
                                   .vehicle = setup_.vehicle,
                                   .driving = setup_.driving,
                                   .planner = setup_.planner});
     front_s_m_.reset();
+  }
+
+  bool stands_at_goal(const VehicleState& ego) const {
+    const map::Lane& lane = setup_.road_map->lane(setup_.goal.lane);
+    const Eigen::Vector2d off =
+        lane.pose_at(setup_.goal.s_m).inverse() * ego.map_from_vehicle.position();
+    return ego.speed_mps <= 0.0 && std::abs(off.x()) <= kAtGoal_m &&
+           std::abs(off.y()) <= 0.5 * lane.width_m(setup_.goal.s_m);
   }
 
   PilotAnswer without_route(const PilotView& view) const {
@@ -203,7 +214,9 @@ class Pilot::Impl {
                        .decision = {}};
     answer.acceleration_mps2 = answer.trajectory.points().front().acceleration_mps2;
     answer.decision.behaviour = Behaviour::stop;
-    answer.decision.reason = "no route leads to the goal: " + why_no_route_;
+    answer.is_at_goal = stands_at_goal(view.ego);
+    answer.decision.reason =
+        answer.is_at_goal ? "stands at the goal" : "no route leads to the goal: " + why_no_route_;
     return answer;
   }
 
@@ -217,16 +230,33 @@ class Pilot::Impl {
     if (!front_s_m_) front_s_m_ = replanner.s_m() + setup_.vehicle.wheelbase_m;
     const control::TrackingError error =
         tracking_error(path, view.ego.map_from_vehicle, setup_.vehicle.wheelbase_m, *front_s_m_);
-    PilotAnswer answer{
-        .trajectory = planned_trajectory({path, replanner.s_m(), stops_by_s_m(path, view.t_s)},
-                                         view.t_s, view.ego, decision_, setup_.vehicle),
-        .acceleration_mps2 = decision_.acceleration_mps2,
-        .steering_rad = tracking_steering_rad(error, view.ego.speed_mps, setup_.vehicle,
-                                              decision_.most_lateral_mps2),
-        .decision = decision_};
+    PilotAnswer answer{.trajectory = trajectory_of(view),
+                       .acceleration_mps2 = decision_.acceleration_mps2,
+                       .steering_rad = tracking_steering_rad(
+                           error, view.ego.speed_mps, setup_.vehicle, decision_.most_lateral_mps2),
+                       .decision = decision_};
     const double missed_m = replanner.s_m() - task_->line.goal_s_m();
     answer.is_at_goal = view.ego.speed_mps <= 0.0 && std::abs(missed_m) <= kAtGoal_m;
     return answer;
+  }
+
+  /// Past what was planned it leads back to the line, or stays beside it where somebody would be
+  /// met on the way back; straight on where the vehicle is turned away from its path.
+  geometry::Trajectory trajectory_of(const PilotView& view) const {
+    const LateralReplanner& replanner = planner_->replanner();
+    const PlannedPath leads_back = replanner.expected_path();
+    const double turned =
+        leads_back.pose_at(replanner.s_m()).heading_rad - view.ego.map_from_vehicle.heading_rad;
+    if (std::cos(turned) < kTurnedAway) return stopping_trajectory(view.t_s, view.ego);
+    const auto along = [&](const PlannedPath& path) {
+      return planned_trajectory({path, replanner.s_m(), stops_by_s_m(path, view.t_s)}, view.t_s,
+                                view.ego, decision_, setup_.vehicle);
+    };
+    geometry::Trajectory back = along(leads_back);
+    const double met_s = first_contact_s(back, setup_.vehicle, task_->obstacles);
+    if (std::isinf(met_s)) return back;
+    geometry::Trajectory beside = along(replanner.path());
+    return first_contact_s(beside, setup_.vehicle, task_->obstacles) > met_s ? beside : back;
   }
 
   /// What a trajectory that is driven to its end has to stop before: the halt, who stands on the

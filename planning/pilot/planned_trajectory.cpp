@@ -13,8 +13,9 @@ namespace {
 constexpr double kStep_s = 0.1;
 constexpr double kComfortable_mps2 = 3.0;
 constexpr double kHardest_mps2 = geometry::kLongitudinal.max_braking_mps2;
-constexpr double kLeast_mps2 = 1.0;   // to a stop that is wanted now
-constexpr double kHarder_mps2 = 0.5;  // than foreseen: brake at once
+constexpr double kLeast_mps2 = 1.0;    // to a stop that is wanted now
+constexpr double kHarder_mps2 = 0.5;   // than foreseen: brake at once
+constexpr double kLateral_mps2 = 3.0;  // in bends, on the way to a stop
 constexpr double kStandoff_m = 1.0;
 constexpr double kWayStep_m = 0.5;
 
@@ -80,26 +81,6 @@ void cut_before(std::vector<SpeedState>& drive, double room_m) {
   }
 }
 
-std::vector<SpeedState> whole_drive(const VehicleState& measured, const PlannerCommand& decision,
-                                    double room_m) {
-  const double wanted_mps2 = decision.acceleration_mps2;
-  const std::vector<SpeedState>& foreseen = decision.drive;
-  const double foreseen_mps2 = foreseen.size() > 1 ? foreseen[1].acceleration_mps2 : 0.0;
-  const auto stop_now = [&](double least_mps2) {
-    const double needed = needed_mps2({.speed_mps = measured.speed_mps}, room_m);
-    return stop_from(measured.speed_mps, std::max(needed, least_mps2));
-  };
-  if (wanted_mps2 < std::min(0.0, foreseen_mps2) - kHarder_mps2) return stop_now(-wanted_mps2);
-  if (decision.set_speed_mps <= 0.0) {  // what was foreseen is of a path that is given up
-    return stop_now(std::max(kLeast_mps2, -wanted_mps2));
-  }
-  std::vector<SpeedState> drive = in_steps(foreseen);
-  const double after_mps2 = braking_after_mps2(foreseen, decision.lead);
-  cut_before(drive, room_m);
-  stop_after(drive, std::max(needed_mps2(drive.back(), room_m), after_mps2));
-  return drive;
-}
-
 double way_to_m(const PlannedPath& path, double s_m, double to_s_m) {
   constexpr double kFar_m = 1000.0;
   if (to_s_m > s_m + kFar_m) return std::numeric_limits<double>::infinity();
@@ -118,6 +99,51 @@ double station_after(const PlannedPath& path, double s_m, double way_m) {
     way_m -= step_m;
   }
   return s_m;
+}
+
+/// Most that a drive along the path asks to the side, past what it asks now.
+double most_lateral_mps2(const WayToDrive& way, const std::vector<SpeedState>& drive) {
+  double s_m = way.from_s_m, ahead_m = 0.0, most_mps2 = 0.0;
+  for (const SpeedState& state : drive) {
+    s_m = station_after(way.path, s_m, state.ahead_m - ahead_m);
+    ahead_m = std::max(ahead_m, state.ahead_m);
+    const double bend_per_m = std::abs(way.path.curvature_per_m(s_m));
+    most_mps2 = std::max(most_mps2, bend_per_m * state.speed_mps * state.speed_mps);
+  }
+  return most_mps2;
+}
+
+/// As softly as may be, but for the bends on the way.
+std::vector<SpeedState> stop_along(const WayToDrive& way, double speed_mps, double least_mps2) {
+  std::vector<SpeedState> drive = stop_from(speed_mps, least_mps2);
+  const double bend_per_m = std::abs(way.path.curvature_per_m(way.from_s_m));
+  const double allowed_mps2 = std::max(kLateral_mps2, bend_per_m * speed_mps * speed_mps);
+  for (double braking_mps2 = least_mps2 + kHarder_mps2;
+       braking_mps2 <= kHardest_mps2 && most_lateral_mps2(way, drive) > allowed_mps2;
+       braking_mps2 += kHarder_mps2) {
+    drive = stop_from(speed_mps, braking_mps2);
+  }
+  return drive;
+}
+
+std::vector<SpeedState> whole_drive(const WayToDrive& way, const VehicleState& measured,
+                                    const PlannerCommand& decision, double room_m) {
+  const double wanted_mps2 = decision.acceleration_mps2;
+  const std::vector<SpeedState>& foreseen = decision.drive;
+  const double foreseen_mps2 = foreseen.size() > 1 ? foreseen[1].acceleration_mps2 : 0.0;
+  const auto stop_now = [&](double least_mps2) {
+    const double needed = needed_mps2({.speed_mps = measured.speed_mps}, room_m);
+    return stop_along(way, measured.speed_mps, std::max(needed, least_mps2));
+  };
+  if (wanted_mps2 < std::min(0.0, foreseen_mps2) - kHarder_mps2) return stop_now(-wanted_mps2);
+  if (decision.set_speed_mps <= 0.0) {  // what was foreseen is of a path that is given up
+    return stop_now(std::max(kLeast_mps2, -wanted_mps2));
+  }
+  std::vector<SpeedState> drive = in_steps(foreseen);
+  const double after_mps2 = braking_after_mps2(foreseen, decision.lead);
+  cut_before(drive, room_m);
+  stop_after(drive, std::max(needed_mps2(drive.back(), room_m), after_mps2));
+  return drive;
 }
 
 }  // namespace
@@ -148,7 +174,7 @@ geometry::Trajectory planned_trajectory(const WayToDrive& way, double t_s,
   std::vector<geometry::TrajectoryPoint> rows;
   double s_m = way.from_s_m, ahead_m = 0.0;
   const double room_m = way_to_m(way.path, way.from_s_m, way.to_s_m);
-  for (const SpeedState& state : whole_drive(measured, decision, room_m)) {
+  for (const SpeedState& state : whole_drive(way, measured, decision, room_m)) {
     s_m = station_after(way.path, s_m, state.ahead_m - ahead_m);
     ahead_m = std::max(ahead_m, state.ahead_m);
     const PlannedPath::Place place = way.path.place_at(s_m);

@@ -21,7 +21,8 @@ struct WayToDrive {
 /// The trajectory of a decision: along the path at the speeds that are foreseen, a row every 0.1 s,
 /// then to a stop, so that it may be driven to its end where nothing comes after it: from where 3
 /// m/s² lead to a stop in time, or as hard as it takes. A decision to brake harder than the drive
-/// foresees brakes on to a stop at once.
+/// foresees brakes on to a stop at once, harder where bends on the way would ask for more than 3
+/// m/s² to the side.
 /// @param t_s  of the first row.
 geometry::Trajectory planned_trajectory(const WayToDrive& way, double t_s,
                                         const VehicleState& measured,

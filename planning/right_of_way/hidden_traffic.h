@@ -37,6 +37,9 @@ class HiddenTraffic {
   /// for at the first call for a place.
   MayCome towards(std::size_t stop_point, const Visibility& sight, double t_s);
 
+  /// The task has other stop points.
+  void forget() { approaches_.clear(); }
+
  private:
   struct Approach {
     geometry::Polyline way;    ///< up to the end of the lane that meets the route

@@ -105,15 +105,21 @@ double RightOfWay::halt_m(const StopPoint& place) const {
   return is_next(place) && creeps_to_m_ ? *creeps_to_m_ : place.s_m;
 }
 
-/// Having begun to cross, the vehicle goes on looking at those who may cross its path.
+/// Having begun to cross, the vehicle goes on looking at those who may cross its path. Places are
+/// found anew where a light comes into sight.
 void RightOfWay::pass_places(const View& view) {
   const std::vector<StopPoint>& places = task_.stop_points;
-  while (next_ < places.size() && left_m(places[next_], view) < -kPassed_m) {
-    ++next_;
+  const auto go_to = [&](std::size_t next) {
+    next_ = next;
     has_stopped_ = false;
     creeps_to_m_.reset();
     looks_since_s_.reset();
+  };
+  if (places.size() != std::exchange(places_, places.size())) {
+    go_to(0);
+    hidden_.forget();
   }
+  while (next_ < places.size() && left_m(places[next_], view) < -kPassed_m) go_to(next_ + 1);
   if (next_ == 0) return;
   const StopPoint& last = places[next_ - 1];
   const bool is_crossing = view.s_m - vehicle_.rear_overhang_m < last.clear_s_m;

@@ -90,6 +90,7 @@ class RightOfWay {
   const geometry::VehicleShape& vehicle_;
   double comfort_deceleration_mps2_;
   const DrivingTask& task_;
+  std::size_t places_ = 0;    ///< how many there were at the last look
   std::size_t next_ = 0;      ///< the first place that is not passed
   bool has_stopped_ = false;  ///< at that one
   std::vector<bool> crossing_;

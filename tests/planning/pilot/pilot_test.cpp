@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <stdexcept>
 
+#include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/real_data.h"
 
@@ -148,6 +150,138 @@ TEST_F(Pilots, DriveOnWhereSomebodyWasWhoIsGone) {
   for (int k = 0; k < 30; ++k) answer = pilot.step(follow(answer));
   EXPECT_FALSE(answer.decision.lead);
   EXPECT_GT(view_.ego.speed_mps, 4.0) << answer.decision.reason;
+}
+
+/// What a trajectory asks of a body and of who rides in it, by its positions alone.
+struct Ride {
+  double most_turned_rad = 0.0;  ///< between heading and motion
+  double most_lateral_mps2 = 0.0;
+  double least_gap_m = 1e9;  ///< to somebody who drives on as it does
+};
+
+Ride ride_of(const geometry::Trajectory& drive, const Detection& other, double seen_s) {
+  Ride ride;
+  const auto& rows = drive.points();
+  for (std::size_t k = 1; k + 1 < rows.size(); ++k) {
+    const Eigen::Vector2d before = rows[k].pose().position() - rows[k - 1].pose().position();
+    const Eigen::Vector2d after = rows[k + 1].pose().position() - rows[k].pose().position();
+    const double since_s = rows[k].t_s - seen_s;
+    const geometry::Pose2 there =
+        other.centre * geometry::Pose2{other.speed_mps * since_s, 0.0, 0.0};
+    ride.least_gap_m =
+        std::min(ride.least_gap_m,
+                 geometry::distance_m(geometry::body_at(rows[k].pose(), geometry::VehicleShape{}),
+                                      body_around(there, other.length_m, other.width_m)));
+    if (before.norm() < 0.2 || after.norm() < 0.2) continue;
+    const double from_rad = std::atan2(before.y(), before.x());
+    const double turn_rad = geometry::wrap_angle(std::atan2(after.y(), after.x()) - from_rad);
+    const double speed_mps = 0.5 * (before.norm() + after.norm()) / 0.1;
+    ride.most_lateral_mps2 = std::max(ride.most_lateral_mps2, std::abs(turn_rad) * speed_mps / 0.1);
+    ride.most_turned_rad =
+        std::max(ride.most_turned_rad,
+                 std::abs(geometry::wrap_angle(rows[k].heading_rad - from_rad - 0.5 * turn_rad)));
+  }
+  return ride;
+}
+
+// Whenever nothing comes after it.
+TEST_F(Pilots, NeverSwerveBackIntoWhoTheyPass) {
+  PilotSetup faster = setup();
+  faster.driving.desired_speed_mps = 20.0;
+  Pilot pilot(std::move(faster));
+  view_.objects = {{.id = "slower", .centre = place("31/0/-2", 65.0), .speed_mps = 4.0}};
+  bool passes = false;
+  for (int k = 0; k < 60; ++k) {
+    const PilotAnswer answer = pilot.step(view_);
+    SCOPED_TRACE(testing::Message() << view_.t_s << " s: " << answer.decision.reason);
+    passes = passes || answer.decision.behaviour == Behaviour::pass;
+    const Ride ride = ride_of(answer.trajectory, view_.objects[0], view_.t_s);
+    EXPECT_GT(ride.least_gap_m, 0.3);
+    EXPECT_LT(ride.most_turned_rad, 0.02);
+    EXPECT_LT(ride.most_lateral_mps2, 4.2);
+    follow(answer);
+    view_.objects[0].centre = view_.objects[0].centre * geometry::Pose2{0.4, 0.0, 0.0};
+  }
+  EXPECT_TRUE(passes);
+}
+
+// The signal of the crossroads, on another road.
+TEST_F(Pilots, GoOnWithTheirPlanWhenALightComesIntoSight) {
+  Pilot pilot(setup()), undisturbed(setup());
+  view_.objects = {{.id = "slower", .centre = place("31/0/-2", 65.0), .speed_mps = 4.0}};
+  for (int k = 0; k < 50; ++k) {
+    PilotView with_light = view_;
+    if (k == 30) with_light.lights = {{.signal = "1", .colour = LightColour::red}};
+    const PilotAnswer answer = pilot.step(with_light), expected = undisturbed.step(view_);
+    ASSERT_EQ(answer.acceleration_mps2, expected.acceleration_mps2) << view_.t_s;
+    ASSERT_EQ(answer.steering_rad, expected.steering_rad) << view_.t_s;
+    follow(expected);
+    view_.objects[0].centre = view_.objects[0].centre * geometry::Pose2{0.4, 0.0, 0.0};
+  }
+}
+
+// Round the block.
+TEST_F(Pilots, DriveRoundWhereTheyHaveStoppedPastTheirGoal) {
+  Pilot pilot(setup("31/0/-2", 60.0));
+  view_.ego.map_from_vehicle = place("31/0/-2", 50.0);
+  pilot.step(view_);
+  for (const double past_m : {0.5, 3.0}) {
+    view_.t_s += 2.0;
+    view_.ego = {.map_from_vehicle = place("31/0/-2", 60.0 + past_m)};
+    const PilotAnswer answer = pilot.step(view_);
+    EXPECT_EQ(answer.is_at_goal, past_m < 1.0);
+    EXPECT_EQ(answer.decision.behaviour == Behaviour::cruise, past_m > 1.0)
+        << answer.decision.reason;
+  }
+}
+
+TEST_F(Pilots, AreAtTheirGoalWhereTheyFirstStandOnIt) {
+  for (const double ahead_m : {-0.9, 0.0, 0.9}) {
+    Pilot pilot(setup("31/0/-2", 60.0));
+    view_.ego = {.map_from_vehicle = place("31/0/-2", 60.0 + ahead_m)};
+    const PilotAnswer answer = pilot.step(view_);
+    EXPECT_TRUE(answer.is_at_goal) << ahead_m << ": " << answer.decision.reason;
+  }
+}
+
+TEST_F(Pilots, GoStraightOnToAStopWhereNoPathLeadsFromTheirHeading) {
+  Pilot pilot(setup());
+  view_.ego = {.map_from_vehicle = place("31/0/-2", 20.0) * geometry::Pose2{0.0, 0.0, 1.1},
+               .speed_mps = 6.0};
+  const PilotAnswer answer = pilot.step(view_);
+  for (const geometry::TrajectoryPoint& row : answer.trajectory.points()) {
+    const Eigen::Vector2d off = view_.ego.map_from_vehicle.inverse() * row.pose().position();
+    EXPECT_NEAR(off.y(), 0.0, 1e-6);
+    EXPECT_NEAR(row.heading_rad, view_.ego.map_from_vehicle.heading_rad, 1e-9);
+  }
+}
+
+// Main Street, of which the lane of oncoming traffic is free: 3 m behind who has braked hard the
+// vehicle waits for ten seconds, then decides once.
+TEST_F(Pilots, DriveRoundWhoHasStoppedForGood) {
+  Pilot pilot(setup("2/3/-1", 30.0));
+  view_.ego = {.map_from_vehicle = place("1/3/1", 40.0)};
+  view_.lights = {{.signal = "1", .colour = LightColour::green},
+                  {.signal = "2", .colour = LightColour::green}};
+  const geometry::Pose2 lead =
+      view_.ego.map_from_vehicle * geometry::Pose2{geometry::VehicleShape{}.front_m() + 5.25, 0, 0};
+  view_.objects = {{.id = "lead", .centre = lead}};
+  int changes = 0;
+  Behaviour last = Behaviour::stop;
+  double least_m = 1e9;
+  for (int k = 0; k < 400; ++k) {
+    const PilotAnswer answer = pilot.step(view_);
+    changes += answer.decision.behaviour != last;
+    last = answer.decision.behaviour;
+    least_m = std::min(least_m,
+                       geometry::distance_m(
+                           geometry::body_at(view_.ego.map_from_vehicle, geometry::VehicleShape{}),
+                           body_around(lead, view_.objects[0].length_m, view_.objects[0].width_m)));
+    follow(answer);
+  }
+  EXPECT_GT((view_.ego.map_from_vehicle.position() - lead.position()).norm(), 50.0);
+  EXPECT_GT(least_m, 0.25);
+  EXPECT_LT(changes, 12);
 }
 
 TEST_F(Pilots, SayWhyThereIsNoRouteAndStop) {

@@ -127,6 +127,27 @@ TEST(PlannedTrajectory, BrakesAtOnceWhereThatIsDecided) {
 }
 
 // What was foreseen is of a path that is given up: nobody creeps on along it.
+// A bend of 30 m that begins 20 m ahead, at 14 m/s: 6.5 m/s² to the side if it is braked for
+// softly.
+TEST(PlannedTrajectory, BrakesHarderBeforeABend) {
+  std::vector<Eigen::Vector2d> points;
+  for (double x_m = -60.0; x_m < -1.0; x_m += 2.0) points.emplace_back(x_m, 0.0);
+  for (int i = 0; i <= 40; ++i) {
+    const double angle = 0.05 * i;
+    points.emplace_back(kRadius_m * std::sin(angle), kRadius_m * (1.0 - std::cos(angle)));
+  }
+  const ReferenceLine line = ReferenceLine::through(points, 3.0, 14.0);
+  const PlannedPath path(line, [](double s_m) { return LateralState{.s_m = s_m}; });
+  PlannerCommand softly = decision(steady(14.0, 3.0));
+  softly.acceleration_mps2 = -0.6;
+  const geometry::Trajectory driven =
+      planned_trajectory({path, 40.0}, 0.0, {.speed_mps = 14.0}, softly, geometry::VehicleShape{});
+  for (const geometry::TrajectoryPoint& row : driven.points()) {
+    EXPECT_LT(row.speed_mps * row.speed_mps * std::abs(row.curvature_per_m), 3.05) << row.t_s;
+  }
+  EXPECT_EQ(driven.points().back().speed_mps, 0.0);
+}
+
 TEST(PlannedTrajectory, StopsWhereNoSpeedIsWanted) {
   const ReferenceLine line = bend();
   const PlannedPath path(line, [](double s_m) { return LateralState{.s_m = s_m}; });
