@@ -45,9 +45,11 @@ void use(const RoadMap& road_map) {
 
 }  // namespace
 
-// The bytes are given right sizes and checksums, so that what is fuzzed are the readers behind.
+// The bytes as they are, then with right sizes and checksums, so that what is fuzzed are the
+// readers behind.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string bytes(reinterpret_cast<const char*>(data), size);
+  guarded([&] { verify_compiled_map(bytes, "as it is"); });
   roadbed::tests::reseal(bytes);
   guarded([&] { verify_compiled_map(bytes, "fuzz"); });
   guarded([&] { use(read_compiled_map(bytes, "fuzz")); });
