@@ -1,8 +1,12 @@
 #include "roadbed/map/files/untrusted_sqlite.h"
 
+#include <sqlite3.h>
+
 #include <algorithm>
 #include <limits>
 #include <memory>
+
+#include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::map::inline files {
 namespace {
@@ -26,7 +30,7 @@ void distrust(sqlite3* database, std::uint64_t file_size, geometry::WorkBudget& 
   sqlite3_progress_handler(database, kStepsAtOnce, spend, &steps);
 }
 
-bool has_generated_columns(sqlite3* database) {
+std::string schema_fault(sqlite3* database) {
   constexpr const char* kQuestion =
       "select 1 from sqlite_schema s, pragma_table_xinfo(s.name) c "
       "where s.type = 'table' and s.sql not like 'create virtual%' and c.hidden > 1";
@@ -34,7 +38,10 @@ bool has_generated_columns(sqlite3* database) {
   const int status = sqlite3_prepare_v2(database, kQuestion, -1, &prepared, nullptr);
   const std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)> statement(prepared,
                                                                              sqlite3_finalize);
-  return status != SQLITE_OK || sqlite3_step(prepared) != SQLITE_DONE;
+  const int step = status == SQLITE_OK ? sqlite3_step(prepared) : status;
+  if (step == SQLITE_DONE) return {};
+  return step == SQLITE_ROW ? "a column that computes its values"
+                            : one_line(sqlite3_errmsg(database));
 }
 
 }  // namespace roadbed::map::files

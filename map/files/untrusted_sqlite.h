@@ -1,10 +1,11 @@
 #pragma once
 
-#include <sqlite3.h>
-
 #include <cstdint>
+#include <string>
 
 #include "roadbed/geometry/primitives/work_limit.h"
+
+struct sqlite3;
 
 namespace roadbed::map::inline files {
 
@@ -15,8 +16,9 @@ namespace roadbed::map::inline files {
 /// @param steps      of SQLite's machine; outlives the database.
 void distrust(sqlite3* database, std::uint64_t file_size, geometry::WorkBudget& steps);
 
-/// Whether a column of some table computes its values when it is read, for as long as it likes:
-/// within one step. Also where the schema cannot be read. O(schema).
-bool has_generated_columns(sqlite3* database);
+/// What speaks against reading a table: that a column of some table computes its values when it is
+/// read, within one step and for as long as it likes; or what SQLite says of the schema. Empty:
+/// nothing does. O(schema).
+std::string schema_fault(sqlite3* database);
 
 }  // namespace roadbed::map::files

@@ -116,9 +116,8 @@ class Database {
                               static_cast<sqlite3_int64>(bytes.size()),
                               SQLITE_DESERIALIZE_READONLY));
     distrust(opened, bytes.size(), steps_);
-    if (has_generated_columns(opened)) {
-      throw Refusal{"a column that computes its values", "columns that hold them"};
-    }
+    const std::string fault = schema_fault(opened);
+    if (!fault.empty()) throw Refusal{fault, "a whole GeoPackage, whose columns hold values"};
   }
 
   /// Calls `row(statement)` for every row of an answer.

@@ -42,7 +42,8 @@ class BagReader {
 
   void run() {
     std::map<std::int64_t, LogTopic> topics;
-    if (has_generated_columns(database_.get())) refuse("", "a column that computes its values");
+    const std::string fault = schema_fault(database_.get());
+    if (!fault.empty()) refuse("", fault);
     const Statement of_topics = prepared("select id, name, type, serialization_format from topics");
     while (step(of_topics)) {
       count({bytes_of(of_topics, 1), bytes_of(of_topics, 2), bytes_of(of_topics, 3)});

@@ -95,13 +95,6 @@ bool carry_over(const fs::path& from, const fs::path& to,
   return !error;
 }
 
-bool is_still_there(const fs::path& folder, int descriptor) {
-  struct stat opened {
-  }, named{};
-  return ::fstat(descriptor, &opened) == 0 && ::lstat(folder.c_str(), &named) == 0 &&
-         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
-}
-
 /// Descriptor of the folder that is there, locked; less than 0 if somebody else keeps it locked.
 int locked_folder(const fs::path& folder) {
   constexpr int kTries = 300;
@@ -156,8 +149,8 @@ const fs::path& OutputFolder::in_the_making() {
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
-  if (!hidden_.empty() && (!has_exchanged_ || old_descriptor_ >= 0))
-    fs::remove_all(hidden_, ignored);
+  const bool is_locked = !has_exchanged_ || old_descriptor_ >= 0;
+  if (!hidden_.empty() && is_locked) fs::remove_all(hidden_, ignored);
   for (const int descriptor : {descriptor_, old_descriptor_}) {
     if (descriptor >= 0) ::close(descriptor);
   }

@@ -35,11 +35,8 @@ bool remove_if_abandoned(const fs::path& name) {
   const int descriptor = ::open(name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return errno == ENOENT;
   std::error_code error;
-  struct stat opened {
-  }, named{};
-  const bool is_ours = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 &&
-                       ::fstat(descriptor, &opened) == 0 && ::lstat(name.c_str(), &named) == 0 &&
-                       opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+  const bool is_ours =
+      ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && is_still_there(name, descriptor);
   if (is_ours) fs::remove_all(name, error);
   ::close(descriptor);
   return is_ours && !error;
@@ -107,6 +104,13 @@ fs::path take_name(const fs::path& output, const std::function<bool(const fs::pa
     if (errno != EEXIST && errno != EAGAIN) break;
   }
   refuse_output(output, "cannot be written: " + cause(), "choose a folder that you may write to");
+}
+
+bool is_still_there(const fs::path& name, int descriptor) {
+  struct stat opened {
+  }, named{};
+  return ::fstat(descriptor, &opened) == 0 && ::lstat(name.c_str(), &named) == 0 &&
+         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
 }
 
 bool lock_in_the_making(int descriptor) {

@@ -52,6 +52,9 @@ void remove_abandoned(const std::filesystem::path& output);
 std::filesystem::path take_name(const std::filesystem::path& output,
                                 const std::function<bool(const std::filesystem::path&)>& make);
 
+/// Whether what was opened stands under a name still.
+bool is_still_there(const std::filesystem::path& name, int descriptor);
+
 /// Locks what was just opened under a name; false if somebody took it for abandoned meanwhile.
 bool lock_in_the_making(int descriptor);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "roadbed/planning/speed/path_profile.h"
 #include "roadbed/planning/speed/st_graph.h"
@@ -210,13 +211,15 @@ SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead
   return answer;
 }
 
-/// From rest a path may bend as sharply as the wheels can be turned there, and is driven as slowly.
+/// The path round somebody who blocks the road may bend as sharply as the wheels can be turned near
+/// rest, and is driven as slowly.
 double CruiseLaw::pulling_out_mps(const Question& q) const {
   constexpr double kSlow_mps = 5.0, kLook_m = 4.0, kLook_s = 1.0, kLeast_mps = 0.5;
   constexpr BendLimits kWithRoomToSteer{.max_lateral_acceleration_mps2 = 2.0,
                                         .steering_rate_fraction = 0.4};
   const double speed_mps = q.view.measured.speed_mps;
-  if (speed_mps > kSlow_mps) return std::numeric_limits<double>::infinity();
+  if (!q.passing.is_blocked || speed_mps > kSlow_mps)
+    return std::numeric_limits<double>::infinity();
   const PathProfile ahead =
       sample_path_profile(q.replanner().expected_path(), q.replanner().s_m(),
                           kLook_m + kLook_s * speed_mps, q.on.ceiling, vehicle_, kWithRoomToSteer);

@@ -235,8 +235,7 @@ class Pilot::Impl {
                        .steering_rad = tracking_steering_rad(
                            error, view.ego.speed_mps, setup_.vehicle, decision_.most_lateral_mps2),
                        .decision = decision_};
-    const double missed_m = replanner.s_m() - task_->line.goal_s_m();
-    answer.is_at_goal = view.ego.speed_mps <= 0.0 && std::abs(missed_m) <= kAtGoal_m;
+    answer.is_at_goal = stands_at_goal(view.ego);
     return answer;
   }
 

@@ -101,14 +101,26 @@ double station_after(const PlannedPath& path, double s_m, double way_m) {
   return s_m;
 }
 
-/// Most that a drive along the path asks to the side, past what it asks now.
-double most_lateral_mps2(const WayToDrive& way, const std::vector<SpeedState>& drive) {
-  double s_m = way.from_s_m, ahead_m = 0.0, most_mps2 = 0.0;
+/// Places of a drive's states on the way.
+std::vector<PlannedPath::Place> places_of(const WayToDrive& way,
+                                          const std::vector<SpeedState>& drive) {
+  std::vector<PlannedPath::Place> places;
+  double s_m = way.from_s_m, ahead_m = 0.0;
   for (const SpeedState& state : drive) {
     s_m = station_after(way.path, s_m, state.ahead_m - ahead_m);
     ahead_m = std::max(ahead_m, state.ahead_m);
-    const double bend_per_m = std::abs(way.path.curvature_per_m(s_m));
-    most_mps2 = std::max(most_mps2, bend_per_m * state.speed_mps * state.speed_mps);
+    places.push_back(way.path.place_at(s_m));
+  }
+  return places;
+}
+
+/// Most that a drive asks to the side.
+double most_lateral_mps2(const WayToDrive& way, const std::vector<SpeedState>& drive) {
+  const std::vector<PlannedPath::Place> places = places_of(way, drive);
+  double most_mps2 = 0.0;
+  for (std::size_t i = 0; i < drive.size(); ++i) {
+    const double speed_mps = drive[i].speed_mps;
+    most_mps2 = std::max(most_mps2, std::abs(places[i].curvature_per_m) * speed_mps * speed_mps);
   }
   return most_mps2;
 }
@@ -171,13 +183,13 @@ geometry::Trajectory planned_trajectory(const WayToDrive& way, double t_s,
                                         const VehicleState& measured,
                                         const PlannerCommand& decision,
                                         const geometry::VehicleShape& vehicle) {
-  std::vector<geometry::TrajectoryPoint> rows;
-  double s_m = way.from_s_m, ahead_m = 0.0;
   const double room_m = way_to_m(way.path, way.from_s_m, way.to_s_m);
-  for (const SpeedState& state : whole_drive(way, measured, decision, room_m)) {
-    s_m = station_after(way.path, s_m, state.ahead_m - ahead_m);
-    ahead_m = std::max(ahead_m, state.ahead_m);
-    const PlannedPath::Place place = way.path.place_at(s_m);
+  const std::vector<SpeedState> drive = whole_drive(way, measured, decision, room_m);
+  const std::vector<PlannedPath::Place> places = places_of(way, drive);
+  std::vector<geometry::TrajectoryPoint> rows;
+  for (std::size_t i = 0; i < drive.size(); ++i) {
+    const SpeedState& state = drive[i];
+    const PlannedPath::Place& place = places[i];
     rows.push_back({.t_s = t_s + state.t_s,
                     .x_m = place.pose.x_m,
                     .y_m = place.pose.y_m,

@@ -1,6 +1,7 @@
 #include "roadbed/map/files/untrusted_sqlite.h"
 
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <memory>
 #include <string>
@@ -23,17 +24,28 @@ Database database_of(const std::string& statements) {
 
 TEST(UntrustedSqlite, TellsColumnsThatComputeTheirValues) {
   const std::string plain = "create table rows(id integer primary key, text);";
-  EXPECT_FALSE(has_generated_columns(database_of(plain).get()));
+  EXPECT_EQ(schema_fault(database_of(plain).get()), "");
   for (const std::string kind : {"", " virtual", " stored"}) {
     const Database computes =
         database_of(plain + "create table more(a, b as (length(a))" + kind + ");");
-    EXPECT_TRUE(has_generated_columns(computes.get())) << kind;
+    EXPECT_EQ(schema_fault(computes.get()), "a column that computes its values") << kind;
   }
 }
 
 TEST(UntrustedSqlite, OfAFileWithTablesOfModulesHasNone) {
-  EXPECT_FALSE(has_generated_columns(
-      database_of("create virtual table boxes using rtree(id, a, b);").get()));
+  EXPECT_EQ(schema_fault(database_of("create virtual table boxes using rtree(id, a, b);").get()),
+            "");
+}
+
+TEST(UntrustedSqlite, SaysWhatIsWrongWithAFileThatIsNone) {
+  sqlite3* opened = nullptr;
+  ASSERT_EQ(sqlite3_open(":memory:", &opened), SQLITE_OK);
+  const Database database(opened);
+  std::string bytes(4096, 'x');
+  ASSERT_EQ(sqlite3_deserialize(opened, "main", reinterpret_cast<unsigned char*>(bytes.data()),
+                                4096, 4096, SQLITE_DESERIALIZE_READONLY),
+            SQLITE_OK);
+  EXPECT_EQ(schema_fault(opened), "file is not a database");
 }
 
 TEST(UntrustedSqlite, RunsNoViewMakesNoLongValueAndEnds) {
