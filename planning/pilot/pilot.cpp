@@ -100,7 +100,11 @@ class Pilot::Impl {
 
   PilotAnswer step(const PilotView& view) {
     refuse_unusable(view);
-    others_.observe(view.t_s, view.objects);
+    if (view.has_objects) {
+      others_.observe(view.t_s, view.objects);
+    } else {
+      others_.foresee(view.t_s);
+    }
     const bool has_new_light = take_lights(view);
     keep_route(view);
     if (!planner_) return without_route(view);

@@ -41,7 +41,9 @@ struct PilotView {
   double t_s = 0.0;
   VehicleState ego;
   std::vector<Detection> objects;
-  std::vector<SeenLight> lights;  ///< a light that has never been named is dark
+  /// False: they were not measured at this time, and are believed to go on, for 10 s at most.
+  bool has_objects = true;
+  std::vector<SeenLight> lights;  ///< one keeps what it showed; never named, it is dark
 };
 
 /// What to do until the next time, and if there is none.

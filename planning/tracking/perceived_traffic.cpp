@@ -31,7 +31,7 @@ geometry::Trajectory joined(const Track& track, const geometry::Trajectory& ahea
 PerceivedTraffic::PerceivedTraffic(const map::RoadMap& road_map, const TrackerOptions& options)
     : noise_(options.noise),
       tracker_(options),
-      forecast_(road_map),
+      lane_forecast_(road_map),
       across_oncoming_(map::drives_on_the_left(road_map) ? -1.0 : 1.0) {}
 
 MotionBounds PerceivedTraffic::expected() const {
@@ -44,10 +44,19 @@ MotionBounds PerceivedTraffic::expected() const {
 void PerceivedTraffic::observe(double t_s, std::span<const Detection> detections,
                                const Tracker::IsHidden& is_hidden) {
   tracker_.observe(t_s, detections, is_hidden);
+  forecast();
+}
+
+void PerceivedTraffic::foresee(double t_s) {
+  tracker_.foresee(t_s);
+  forecast();
+}
+
+void PerceivedTraffic::forecast() {
   const auto slots = tracker_.slots();
   forecasts_.assign(slots.size(), {});
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    if (slots[i]) forecasts_[i] = forecast_.motions(slots, i);
+    if (slots[i]) forecasts_[i] = lane_forecast_.motions(slots, i);
   }
 }
 

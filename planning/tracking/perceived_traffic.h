@@ -25,6 +25,10 @@ class PerceivedTraffic {
   void observe(double t_s, std::span<const Detection> detections,
                const Tracker::IsHidden& is_hidden = {});
 
+  /// Foresees all at a time at which nothing was measured.
+  /// @throws std::invalid_argument as Tracker::foresee.
+  void foresee(double t_s);
+
   const Tracker& tracker() const { return tracker_; }
 
   /// Per slot of the tracker; empty where that is.
@@ -40,11 +44,12 @@ class PerceivedTraffic {
   static constexpr std::size_t kPlacesPerSlot = LaneForecast::kMostMotions;
 
  private:
+  void forecast();
   bool is_planned_for(const ForecastMotion& motion, double vehicle_heading_rad) const;
 
   ObjectNoise noise_;
   Tracker tracker_;
-  LaneForecast forecast_;
+  LaneForecast lane_forecast_;
   double across_oncoming_;  ///< sign of a turn across oncoming traffic: 1 left, −1 right
   std::vector<std::vector<ForecastMotion>> forecasts_;
 };

@@ -30,13 +30,9 @@ void refuse_twice(std::span<const Detection> detections) {
 
 void Tracker::observe(double t_s, std::span<const Detection> detections,
                       const IsHidden& is_hidden) {
-  if (!std::isfinite(t_s) || (t_s_ && !(t_s > *t_s_))) {
-    throw std::invalid_argument("Tracker: time does not increase");
-  }
   refuse_twice(detections);
-  const double before_s = t_s_.value_or(t_s);
-  t_s_ = t_s;
-  go_on(before_s);
+  go_on(t_s);
+  measured_s_ = t_s;
   std::vector<bool> is_taken(detections.size(), false);
   give_by_id(detections, is_taken);
   give_by_fit(detections, false, is_taken);
@@ -48,14 +44,23 @@ void Tracker::observe(double t_s, std::span<const Detection> detections,
   remember();
 }
 
-void Tracker::go_on(double before_s) {
-  const double t_s = *t_s_;
+void Tracker::foresee(double t_s) {
+  go_on(t_s);
+  expect([](const Eigen::Vector2d&) { return true; });
+  remember();
+}
+
+void Tracker::go_on(double t_s) {
+  if (!std::isfinite(t_s) || (t_s_ && !(t_s > *t_s_))) {
+    throw std::invalid_argument("Tracker: time does not increase");
+  }
+  t_s_ = t_s;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     std::optional<Track>& track = slots_[i];
     if (!track) continue;
     track->detection.reset();
     const bool is_old = t_s - track->expected_s > options_.coasts_for_s + 1e-9;
-    if (is_old || (track->is_tentative() && track->last_measured_s < before_s)) {
+    if (is_old || (track->is_tentative() && track->last_measured_s < measured_s_)) {
       if (track->has_own_id) slot_of_id_.erase(track->id);
       track.reset();
       left_at_s_[i] = t_s;

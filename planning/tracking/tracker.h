@@ -67,11 +67,15 @@ class Tracker {
   ///         detections have one id.
   void observe(double t_s, std::span<const Detection> detections, const IsHidden& is_hidden = {});
 
+  /// Lets time pass in which nothing was measured: all are believed to go on, as if hidden.
+  /// @throws std::invalid_argument if the time is not later than that of the call before.
+  void foresee(double t_s);
+
   /// Tracks of now; a slot may be empty.
   std::span<const std::optional<Track>> slots() const { return slots_; }
 
  private:
-  void go_on(double before_s);
+  void go_on(double t_s);
   void give_by_id(std::span<const Detection> detections, std::vector<bool>& is_taken);
   void give_by_fit(std::span<const Detection> detections, bool to_tentative,
                    std::vector<bool>& is_taken);
@@ -83,6 +87,7 @@ class Tracker {
 
   TrackerOptions options_;
   std::optional<double> t_s_;
+  double measured_s_ = 0.0;  ///< when all was measured last, if ever
   std::vector<std::optional<Track>> slots_;
   std::vector<double> left_at_s_;                  ///< per slot, when it became empty
   std::map<std::string, std::size_t> slot_of_id_;  ///< of tracks with an id of their own

@@ -20,8 +20,8 @@ namespace {
 
 constexpr double kFarthest_m = 1e9;
 constexpr Range kPlace{-kFarthest_m, kFarthest_m}, kAnyAngle{-1e3, 1e3}, kAnySpeed{-100.0, 150.0},
-    kOwnSpeed{0.0, 150.0}, kAcceleration{-50.0, 50.0}, kSteering{-1.6, 1.6}, kBodySize{0.05, 100.0},
-    kAnyTime{-1e9, 1e9};
+    kOwnSpeed{-1.0, 150.0}, kAcceleration{-50.0, 50.0}, kSteering{-1.6, 1.6},
+    kBodySize{0.05, 100.0}, kAnyTime{-1e9, 1e9};
 constexpr std::size_t kMostObjects = 10'000;
 
 geometry::Pose2 pose_in(const map::RoadMap& road_map, const JsonNode& node) {
@@ -34,7 +34,7 @@ planning::VehicleState ego_in(const map::RoadMap& road_map, const JsonNode& node
   node.require_object({"x_m", "y_m", "heading_rad", "speed_mps", "acceleration_mps2",
                        "steering_rad", "s_m", "d_m"});
   return {.map_from_vehicle = pose_in(road_map, node),
-          .speed_mps = node.at("speed_mps").number(kOwnSpeed),
+          .speed_mps = std::max(0.0, node.at("speed_mps").number(kOwnSpeed)),
           .steering_rad = node.number_or("steering_rad", 0.0, kSteering),
           .acceleration_mps2 = node.number_or("acceleration_mps2", 0.0, kAcceleration)};
 }
@@ -154,8 +154,12 @@ planning::PilotView parse_pilot_view(const map::RoadMap& road_map, std::string_v
   planning::PilotView view{.t_s = root.at("t_s").number(kAnyTime),
                            .ego = ego_in(road_map, root.at("ego")),
                            .objects = {},
+                           .has_objects = false,
                            .lights = {}};
-  if (const auto objects = root.find("obstacles")) view.objects = objects_in(road_map, *objects);
+  if (const auto objects = root.find("obstacles")) {
+    view.objects = objects_in(road_map, *objects);
+    view.has_objects = true;
+  }
   if (const auto lights = root.find("lights")) {
     for (const JsonNode& light : lights->elements()) {
       view.lights.push_back(light_in(road_map, light));

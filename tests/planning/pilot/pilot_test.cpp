@@ -140,6 +140,22 @@ TEST_F(Pilots, StandBehindWhoStandsWhereverTheyAreNotTold) {
   EXPECT_LT(gap_m, 8.0);
 }
 
+TEST_F(Pilots, ComeToRestBehindWhoStoodThereWhenNobodyLooks) {
+  Pilot pilot(setup());
+  for (const char* lane : {"31/0/-1", "31/0/-2"}) {
+    view_.objects.push_back({.id = lane, .centre = place(lane, 80.0)});
+  }
+  PilotAnswer answer = pilot.step(view_);
+  view_.objects.clear();
+  view_.has_objects = false;
+  for (int k = 0; k < 95; ++k) answer = pilot.step(follow(answer));
+  EXPECT_LT(view_.ego.speed_mps, 1.0);
+  const double gap_m =
+      (place("31/0/-2", 80.0).position() - view_.ego.map_from_vehicle.position()).norm() - 2.25 -
+      geometry::VehicleShape{}.front_m();
+  EXPECT_GT(gap_m, 0.5);
+}
+
 TEST_F(Pilots, DriveOnWhereSomebodyWasWhoIsGone) {
   Pilot pilot(setup());
   view_.ego.speed_mps = 4.0;

@@ -88,6 +88,33 @@ TEST(Tracker, WhoIsHiddenIsNotGoneForTenSeconds) {
   }
 }
 
+TEST(Tracker, WhoIsNotMeasuredGoesOnForTenSeconds) {
+  Tracker tracker;
+  double t_s = 0.0;
+  for (; t_s < 0.95; t_s += 0.1) {
+    tracker.observe(t_s, std::vector{at(10.0 * t_s, 0.0, 10.0), at(0.0, 9.0, 0.0, 0.0, "stands")});
+  }
+  for (; t_s < 9.0; t_s += 0.1) tracker.foresee(t_s);
+  EXPECT_EQ(alive(tracker), 2u);
+  EXPECT_NEAR(find(tracker, "track 1")->filter.state().pose.x_m, 10.0 * (t_s - 0.1), 0.5);
+  for (; t_s < 13.0; t_s += 0.1) tracker.foresee(t_s);
+  EXPECT_EQ(alive(tracker), 0u);
+  EXPECT_THROW(tracker.foresee(t_s - 1.0), std::invalid_argument);
+}
+
+TEST(Tracker, WhatIsMeasuredEverySecondTimeIsNotForgottenBetween) {
+  Tracker tracker;
+  for (int k = 0; k < 10; ++k) {
+    if (k % 2 == 0) {
+      tracker.observe(0.1 * k, std::vector{at(k, 0.0, 10.0)});
+    } else {
+      tracker.foresee(0.1 * k);
+    }
+    ASSERT_EQ(alive(tracker), 1u) << k;
+  }
+  EXPECT_FALSE(find(tracker, "track 1")->is_tentative());
+}
+
 TEST(Tracker, TellsWhichDetectionIsOfWhom) {
   Tracker tracker;
   for (int k = 0; k < 5; ++k) {

@@ -59,6 +59,7 @@ TEST(PilotLines, AreReadAsTheyAreWritten) {
   EXPECT_EQ(view.ego.speed_mps, 3.0);
   EXPECT_EQ(view.ego.acceleration_mps2, -1.0);
   EXPECT_EQ(town()->to_source(view.ego.map_from_vehicle.position()), Eigen::Vector2d(10, 20));
+  EXPECT_TRUE(view.has_objects);
   ASSERT_EQ(view.objects.size(), 2u);
   EXPECT_EQ(view.objects[0].kind, "bus");
   EXPECT_EQ(view.objects[0].length_m, 12.0);
@@ -67,6 +68,18 @@ TEST(PilotLines, AreReadAsTheyAreWritten) {
   EXPECT_EQ(view.objects[1].speed_mps, -1.0);
   ASSERT_EQ(view.lights.size(), 1u);
   EXPECT_EQ(view.lights[0].colour, planning::LightColour::yellow);
+}
+
+TEST(PilotLines, WithoutObstaclesSayThatNobodyLooked) {
+  const auto view_of = [](const std::string& rest) {
+    return parse_pilot_view(
+        *town(),
+        R"({"t_s":0,"ego":{"x_m":0,"y_m":0,"heading_rad":0,"speed_mps":-0.02})" + rest + "}",
+        "line 1");
+  };
+  EXPECT_FALSE(view_of("").has_objects);
+  EXPECT_TRUE(view_of(R"(,"obstacles":[])").has_objects);
+  EXPECT_EQ(view_of("").ego.speed_mps, 0.0);  // who rolls back a little stands
 }
 
 TEST(PilotLines, AreRefusedWithTheirPlace) {
@@ -88,7 +101,7 @@ TEST(PilotLines, AreRefusedWithTheirPlace) {
       HasSubstr("/obstacles/1/id: is \"a\" again"));
   EXPECT_THAT(fault_of(with(R"("lights":[{"signal":"nowhere","colour":"red"}])")),
               HasSubstr("/lights/0/signal"));
-  EXPECT_THAT(fault_of(R"({"t_s":0,"ego":{"x_m":0,"y_m":0,"heading_rad":0,"speed_mps":-1}})"),
+  EXPECT_THAT(fault_of(R"({"t_s":0,"ego":{"x_m":0,"y_m":0,"heading_rad":0,"speed_mps":-1.5}})"),
               HasSubstr("/ego/speed_mps"));
 }
 
