@@ -145,9 +145,9 @@ CellRange HeightBandSlicer::range(const Box2& box, double margin_m) const {
 
 std::vector<Slab> HeightBandSlicer::slabs() const {
   std::vector<Slab> slabs;
-  for (const OccupancyCell& leaf : source_.cells()) {
+  source_.for_each_cell([&](const OccupancyCell& leaf) {
     if (const std::optional<Slab> slab = slab_of(leaf)) slabs.push_back(*slab);
-  }
+  });
   return slabs;
 }
 

@@ -143,15 +143,8 @@ CellState OccupancyMap::at(const Eigen::Vector3d& in_source) const {
   return key ? tree_->octree.at(*key) : CellState::unknown;
 }
 
-void OccupancyMap::for_each_cell(const std::function<void(const OccupancyCell&)>& use) const {
+void OccupancyMap::for_each_cell(const UseCell& use) const {
   tree_->octree.for_each({}, [&](const CompactOctree::Leaf& leaf) { use(tree_->cell_of(leaf)); });
-}
-
-std::vector<OccupancyCell> OccupancyMap::cells() const {
-  std::vector<OccupancyCell> cells;
-  cells.reserve(tree_->octree.leaves());
-  for_each_cell([&](const OccupancyCell& cell) { cells.push_back(cell); });
-  return cells;
 }
 
 void OccupancyMap::for_each_in(const Box3& box, const UseCell& use) const {

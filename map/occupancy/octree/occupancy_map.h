@@ -66,11 +66,7 @@ class OccupancyMap final : public OccupancySource {
   /// State at a point; beyond the octree's range it is unknown. O(16).
   CellState at(const Eigen::Vector3d& in_source) const;
 
-  /// All leaves with a state, in the octree's own order, one after the other.
-  void for_each_cell(const std::function<void(const OccupancyCell&)>& use) const;
-
-  /// The same as a list, which takes 40 bytes a leaf.
-  std::vector<OccupancyCell> cells() const override;
+  void for_each_cell(const UseCell& use) const override;
 
   /// In the same order. O(leaves in the box).
   void for_each_in(const Box3& box, const UseCell& use) const override;

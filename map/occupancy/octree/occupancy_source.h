@@ -47,16 +47,19 @@ class OccupancySource {
   /// Around all leaves; none if there is none.
   virtual std::optional<Box3> bounds() const = 0;
 
-  /// All leaves with a state.
-  virtual std::vector<OccupancyCell> cells() const = 0;
-
   /// Takes a leaf.
   using UseCell = std::function<void(const OccupancyCell&)>;
+
+  /// Goes through all leaves with a state, one after the other, in the octree's own order.
+  virtual void for_each_cell(const UseCell& use) const = 0;
+
+  /// The same as a list, which takes 40 bytes a leaf.
+  std::vector<OccupancyCell> cells() const;
 
   /// Goes through those that overlap a box, and some around it perhaps. Several threads may.
   virtual void for_each_in(const Box3& box, const UseCell& use) const = 0;
 
-  /// The same as a list.
+  /// Those as a list.
   std::vector<OccupancyCell> cells_in(const Box3& box) const;
 
  protected:
@@ -66,6 +69,12 @@ class OccupancySource {
   OccupancySource& operator=(const OccupancySource&) = default;
   OccupancySource& operator=(OccupancySource&&) = default;
 };
+
+inline std::vector<OccupancyCell> OccupancySource::cells() const {
+  std::vector<OccupancyCell> cells;
+  for_each_cell([&](const OccupancyCell& cell) { cells.push_back(cell); });
+  return cells;
+}
 
 inline std::vector<OccupancyCell> OccupancySource::cells_in(const Box3& box) const {
   std::vector<OccupancyCell> cells;

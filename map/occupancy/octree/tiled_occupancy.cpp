@@ -39,10 +39,6 @@ bool is_that_of(const OccupancyMap& map, const TilesIndex& index, const Occupanc
          (box->max_in_source.array() < square.max_in_source.array() + rounding_m).all();
 }
 
-void append_to(std::vector<OccupancyCell>& cells, std::vector<OccupancyCell> more) {
-  cells.insert(cells.end(), more.begin(), more.end());
-}
-
 }  // namespace
 
 TiledOccupancy::TiledOccupancy(const std::filesystem::path& folder)
@@ -60,10 +56,8 @@ std::optional<Box3> TiledOccupancy::bounds() const {
   return box;
 }
 
-std::vector<OccupancyCell> TiledOccupancy::cells() const {
-  std::vector<OccupancyCell> cells;
-  for (const OccupancyTile& tile : index_.tiles) append_to(cells, load(tile)->cells());
-  return cells;
+void TiledOccupancy::for_each_cell(const UseCell& use) const {
+  for (const OccupancyTile& tile : index_.tiles) load(tile)->for_each_cell(use);
 }
 
 void TiledOccupancy::for_each_in(const Box3& box, const UseCell& use) const {
@@ -77,7 +71,8 @@ std::vector<OccupancyCell> TiledOccupancy::cells_of_tiles(std::span<const Box3> 
   for (const OccupancyTile& tile : index_.tiles) {
     const Box3 square = square_of(index_, tile);
     const auto meets = [&](const Box3& box) { return do_meet(square, box); };
-    if (std::ranges::any_of(boxes, meets)) append_to(cells, load(tile)->cells());
+    if (std::ranges::none_of(boxes, meets)) continue;
+    load(tile)->for_each_cell([&](const OccupancyCell& cell) { cells.push_back(cell); });
   }
   return cells;
 }

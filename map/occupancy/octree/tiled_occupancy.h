@@ -34,14 +34,14 @@ class TiledOccupancy final : public OccupancySource {
 
   /// Of all tiles, one after the other: as much memory as all leaves take.
   /// @throws InputError if a tile is missing, unusable, or not the one that the index names.
-  std::vector<OccupancyCell> cells() const override;
+  void for_each_cell(const UseCell& use) const override;
 
   /// Of the tiles that the box meets.
-  /// @throws as `cells`.
+  /// @throws as `for_each_cell`.
   void for_each_in(const Box3& box, const UseCell& use) const override;
 
   /// All leaves of the tiles that meet any of some boxes, each once.
-  /// @throws as `cells`.
+  /// @throws as `for_each_cell`.
   std::vector<OccupancyCell> cells_of_tiles(std::span<const Box3> boxes) const;
 
   /// How many times a tile was read from its file.

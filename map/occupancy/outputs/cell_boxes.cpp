@@ -59,14 +59,10 @@ void join_along(std::size_t axis, std::vector<CellBox>& boxes) {
 
 std::vector<CellBox> occupied_boxes(const OccupancySource& occupancy, const GridHeights& heights,
                                     const std::string& name) {
-  const CellGrid grid(occupancy);
-  const CellBox between = cells_between(grid, heights);
   std::vector<CellBox> boxes;
   std::size_t count = 0;
-  for (const OccupancyCell& leaf : occupancy.cells()) {
-    if (leaf.state != CellState::occupied) continue;
-    const CellBox cells = grid.cells_of(leaf).cut(between);
-    if (cells.empty()) continue;
+  for_each_part(occupancy, heights, [&](const CellBox& cells, CellState state) {
+    if (state != CellState::occupied) return;
     count += count_rows(cells);
     if (count > kMostRows) {
       throw InputError({.file = name,
@@ -75,7 +71,7 @@ std::vector<CellBox> occupied_boxes(const OccupancySource& occupancy, const Grid
                         .remedy = "take a part with roadbed occupancy crop"});
     }
     append_rows(cells, boxes);
-  }
+  });
   for (std::size_t axis = 0; axis < 3; ++axis) join_along(axis, boxes);
   std::ranges::sort(boxes, {}, [](const CellBox& box) {
     return std::array{box.from[2], box.from[1], box.from[0]};

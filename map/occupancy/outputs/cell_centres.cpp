@@ -74,19 +74,18 @@ std::string records(const std::vector<Eigen::Vector3d>& points,
 std::vector<Eigen::Vector3d> occupied_centres(const OccupancySource& occupancy,
                                               const std::string& name) {
   const double resolution_m = occupancy.resolution_m();
-  const std::vector<OccupancyCell> leaves = occupancy.cells();
   std::size_t count = 0;
-  for (const OccupancyCell& leaf : leaves) {
-    if (leaf.state != CellState::occupied) continue;
+  occupancy.for_each_cell([&](const OccupancyCell& leaf) {
+    if (leaf.state != CellState::occupied) return;
     const auto along = static_cast<std::size_t>(cells_along(leaf, resolution_m));
     count += along * along * along;
     check_count(count, name);
-  }
+  });
   std::vector<Eigen::Vector3d> points;
   points.reserve(count);
-  for (const OccupancyCell& leaf : leaves) {
+  occupancy.for_each_cell([&](const OccupancyCell& leaf) {
     if (leaf.state == CellState::occupied) append_leaf(leaf, resolution_m, points);
-  }
+  });
   return points;
 }
 

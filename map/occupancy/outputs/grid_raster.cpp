@@ -36,11 +36,8 @@ HeightBands height_bands(const OccupancySource& occupancy, const GridHeights& he
   const std::vector<float> nothing(grid.squares.size(), kNothing);
   HeightBands bands{nothing, nothing};
   const CellGrid cells(occupancy);
-  const CellBox between = cells_between(cells, heights);
-  for (const OccupancyCell& leaf : occupancy.cells()) {
-    if (leaf.state != CellState::occupied) continue;
-    const CellBox part = cells.cells_of(leaf).cut(between);
-    if (part.empty()) continue;
+  for_each_part(occupancy, heights, [&](const CellBox& part, CellState state) {
+    if (state != CellState::occupied) return;
     const Box3 place = cells.box_in_source(part);
     const auto bottom_m = static_cast<float>(place.min_in_source.z()),
                top_m = static_cast<float>(place.max_in_source.z());
@@ -48,7 +45,7 @@ HeightBands height_bands(const OccupancySource& occupancy, const GridHeights& he
       bands.lowest_m[square] = std::fmin(bands.lowest_m[square], bottom_m);
       bands.highest_m[square] = std::fmax(bands.highest_m[square], top_m);
     });
-  }
+  });
   return bands;
 }
 

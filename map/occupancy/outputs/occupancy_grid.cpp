@@ -13,29 +13,6 @@ namespace {
 
 constexpr double kMostSquares = 1e8;
 
-/// A leaf, or what of it lies between the heights.
-struct Part {
-  CellBox cells;
-  CellState state;
-};
-
-std::vector<Part> parts_between(const OccupancySource& occupancy, const CellGrid& grid,
-                                const GridHeights& heights) {
-  const CellBox between = cells_between(grid, heights);
-  std::vector<Part> parts;
-  for (const OccupancyCell& leaf : occupancy.cells()) {
-    const CellBox cells = grid.cells_of(leaf).cut(between);
-    if (!cells.empty()) parts.push_back({cells, leaf.state});
-  }
-  return parts;
-}
-
-CellBox box_around(const std::vector<Part>& parts) {
-  CellBox box;
-  for (const Part& part : parts) box = box.joined(part.cells);
-  return box;
-}
-
 OccupancyGrid empty_grid(const CellBox& box, const CellGrid& cells, double resolution_m,
                          const std::string& name) {
   const std::int64_t columns = box.to[0] - box.from[0], rows = box.to[1] - box.from[1];
@@ -57,28 +34,36 @@ OccupancyGrid empty_grid(const CellBox& box, const CellGrid& cells, double resol
 
 }  // namespace
 
-CellBox cells_between(const CellGrid& grid, const GridHeights& heights) {
+void for_each_part(const OccupancySource& occupancy, const GridHeights& heights,
+                   const std::function<void(const CellBox&, CellState)>& use) {
   constexpr double anywhere = std::numeric_limits<double>::infinity();
-  return grid.cells_of(
+  const CellGrid grid(occupancy);
+  const CellBox between = grid.cells_of(
       Box3{{-anywhere, -anywhere, heights.from_m}, {anywhere, anywhere, heights.to_m}});
+  occupancy.for_each_cell([&](const OccupancyCell& leaf) {
+    const CellBox cells = grid.cells_of(leaf).cut(between);
+    if (!cells.empty()) use(cells, leaf.state);
+  });
 }
 
 OccupancyGrid grid_from_above(const OccupancySource& occupancy, const GridHeights& heights,
                               const std::string& name) {
   const CellGrid cells(occupancy);
-  const std::vector<Part> parts = parts_between(occupancy, cells, heights);
-  if (parts.empty()) {
+  CellBox box;
+  for_each_part(occupancy, heights,
+                [&](const CellBox& part, CellState) { box = box.joined(part); });
+  if (box.empty()) {
     throw InputError({.file = name,
                       .found = "no cell between the heights",
                       .needed = "at least one",
                       .remedy = "give other heights; see: roadbed occupancy info"});
   }
-  OccupancyGrid grid = empty_grid(box_around(parts), cells, occupancy.resolution_m(), name);
-  for (const Part& part : parts) {
-    grid.for_each_square(part.cells, [&](std::size_t square) {
-      grid.squares[square] = std::max(grid.squares[square], part.state);  // unknown, free, occupied
+  OccupancyGrid grid = empty_grid(box, cells, occupancy.resolution_m(), name);
+  for_each_part(occupancy, heights, [&](const CellBox& part, CellState state) {
+    grid.for_each_square(part, [&](std::size_t square) {
+      grid.squares[square] = std::max(grid.squares[square], state);  // unknown, free, occupied
     });
-  }
+  });
   return grid;
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -42,8 +43,9 @@ struct OccupancyGrid {
   }
 };
 
-/// The cells between heights, of any place.
-CellBox cells_between(const CellGrid& grid, const GridHeights& heights);
+/// Goes through all leaves that have a state, each as what of it lies between the heights.
+void for_each_part(const OccupancySource& occupancy, const GridHeights& heights,
+                   const std::function<void(const CellBox&, CellState)>& use);
 
 /// A square is occupied if a cell of the heights is, else free if one is, else unknown.
 /// @param name  of the octree's file, for messages.

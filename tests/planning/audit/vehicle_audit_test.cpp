@@ -211,7 +211,7 @@ class CountedOccupancy : public map::OccupancySource {
   const std::string& crs() const override { return occupancy_.crs(); }
   std::optional<map::SeeThroughRemoval> seen_through() const override { return std::nullopt; }
   std::optional<map::Box3> bounds() const override { return occupancy_.bounds(); }
-  std::vector<map::OccupancyCell> cells() const override { return occupancy_.cells(); }
+  void for_each_cell(const UseCell& use) const override { occupancy_.for_each_cell(use); }
   void for_each_in(const map::Box3& box, const UseCell& use) const override {
     ++times_[{box.min_in_source.x(), box.min_in_source.y()}];
     occupancy_.for_each_in(box, use);
