@@ -11,7 +11,7 @@
 namespace roadbed::control {
 namespace {
 
-constexpr double kStep = 0.1;
+constexpr double kCycle_s = 0.1;
 
 struct Car {
   double position_m = 0.0, speed_mps = 0.0, acceleration_mps2 = 0.0;
@@ -19,9 +19,9 @@ struct Car {
   // Fine steps of the actuator's lag, the speed never below zero.
   void drive(double command_mps2) {
     for (int i = 0; i < 10; ++i) {
-      position_m += 0.1 * kStep * speed_mps;
-      speed_mps = std::max(0.0, speed_mps + 0.1 * kStep * acceleration_mps2);
-      acceleration_mps2 = actuate(acceleration_mps2, command_mps2, 0.1 * kStep);
+      position_m += 0.1 * kCycle_s * speed_mps;
+      speed_mps = std::max(0.0, speed_mps + 0.1 * kCycle_s * acceleration_mps2);
+      acceleration_mps2 = actuate(acceleration_mps2, command_mps2, 0.1 * kCycle_s);
     }
   }
 };
@@ -38,7 +38,7 @@ TEST(CruiseControl, SettlesAtHeadwayTimesSpeedPlusStandstillGap) {
     CruiseControl control({});
     Car own{.speed_mps = lead_mps + 2.0};
     double lead_m = 60.0;
-    for (int k = 0; k < 1200; ++k, lead_m += kStep * lead_mps) {
+    for (int k = 0; k < 1200; ++k, lead_m += kCycle_s * lead_mps) {
       own.drive(control.update(own.speed_mps, own.acceleration_mps2, kFast,
                                measure(own, lead_m, lead_mps)));
     }
@@ -71,11 +71,11 @@ TEST(CruiseControl, FollowsAFallingSetSpeedWithoutLagInTheAcceleration) {
   CruiseControl control({});
   Car own{.speed_mps = 20.0, .acceleration_mps2 = -1.5};
   for (int k = 0; k < 80; ++k) {
-    const double set_mps = 20.0 - 1.5 * kStep * k;
+    const double set_mps = 20.0 - 1.5 * kCycle_s * k;
     own.drive(control.update(own.speed_mps, own.acceleration_mps2,
                              {.speed_mps = set_mps, .acceleration_mps2 = -1.5}, {}));
   }
-  EXPECT_NEAR(own.speed_mps, 20.0 - 1.5 * kStep * 80, 0.02);
+  EXPECT_NEAR(own.speed_mps, 20.0 - 1.5 * kCycle_s * 80, 0.02);
 }
 
 TEST(CruiseControl, NeverAsksForMoreThanAQuarterOfGravity) {
@@ -124,8 +124,8 @@ TEST(CruiseControl, EstimateIsNearerToTheTruthThanTheMeasurement) {
       squared_estimate += std::pow((*control.estimate())[0] - truth, 2);
     }
     own.drive(command);
-    lead_m += kStep * lead_mps;
-    lead_mps += kStep * std::sin(0.02 * k);
+    lead_m += kCycle_s * lead_mps;
+    lead_mps += kCycle_s * std::sin(0.02 * k);
   }
   EXPECT_LT(squared_estimate, 0.1 * squared_raw);
 }

@@ -6,12 +6,11 @@
 #include <fstream>
 #include <sstream>
 
+#include "roadbed/tests/control/default_vehicle.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::control {
 namespace {
-
-const geometry::VehicleShape kVehicle;
 
 SingleTrackState drive(SingleTrackState state, const SingleTrackInput& input, double step_s,
                        int steps) {
@@ -37,17 +36,17 @@ TEST(SingleTrack, AgreesWithCommonRoadsKinematicModel) {
   SingleTrackState state{.speed_mps = 10.0};
   double t = 0.0;
   int rows = 0;
-  constexpr double kStep = 0.001;
+  constexpr double kStep_s = 0.001;
   while (std::getline(file, line)) {
     for (char& c : line) c = c == ',' ? ' ' : c;
     std::istringstream row(line);
     double row_t, x, y, delta, v, psi;
     ASSERT_TRUE(row >> row_t >> x >> y >> delta >> v >> psi) << line;
-    for (; t < row_t - 0.5 * kStep; t += kStep) {
+    for (; t < row_t - 0.5 * kStep_s; t += kStep_s) {
       state = step(state,
-                   {.acceleration_mps2 = t < 3.0 - 0.5 * kStep ? 1.0 : -0.5,
-                    .steering_rate_radps = 0.05 * std::sin(t + 0.5 * kStep)},
-                   kStep, kVehicle);
+                   {.acceleration_mps2 = t < 3.0 - 0.5 * kStep_s ? 1.0 : -0.5,
+                    .steering_rate_radps = 0.05 * std::sin(t + 0.5 * kStep_s)},
+                   kStep_s, kVehicle);
     }
     EXPECT_NEAR(state.pose.x_m, x, 1e-5) << "t = " << row_t;
     EXPECT_NEAR(state.pose.y_m, y, 1e-5);

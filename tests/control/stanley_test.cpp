@@ -8,11 +8,11 @@
 #include <random>
 
 #include "roadbed/control/single_track.h"
+#include "roadbed/tests/control/default_vehicle.h"
 
 namespace roadbed::control {
 namespace {
 
-const geometry::VehicleShape kVehicle;
 using geometry::Pose2;
 
 TEST(Stanley, LookForwardDistanceIsThatOfTheFigure) {
@@ -66,13 +66,13 @@ TEST(Stanley, SteeringNeverPassesTheLimit) {
 }
 
 SingleTrackState track_x_axis(SingleTrackState state, double duration_s) {
-  constexpr double kStep = 0.01;
-  for (double t = 0.0; t < duration_s; t += kStep) {
+  constexpr double kStep_s = 0.01;
+  for (double t = 0.0; t < duration_s; t += kStep_s) {
     const Eigen::Vector2d front = state.pose * Eigen::Vector2d(kVehicle.wheelbase_m, 0.0);
     const TrackingError error =
         tracking_error(state.pose, kVehicle.wheelbase_m, {front.x(), 0.0, 0.0});
     const double wanted = stanley_steering_rad(error, state.speed_mps, kVehicle);
-    state = step(state, {.steering_rate_radps = (wanted - state.steering_rad) / kStep}, kStep,
+    state = step(state, {.steering_rate_radps = (wanted - state.steering_rad) / kStep_s}, kStep_s,
                  kVehicle);
   }
   return state;

@@ -10,7 +10,7 @@ namespace roadbed::tests {
 namespace {
 
 using Length = boost::property<boost::edge_weight_t, double>;
-using Graph =
+using TwoWayGraph =
     boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS, boost::no_property, Length>;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -56,7 +56,7 @@ bool leads_to(const map::RoadMap& road_map, map::LaneId lane, bool against, map:
 
 struct TwoWayOracle::Impl {
   const map::RoadMap& road_map;
-  Graph graph;
+  TwoWayGraph graph;
   std::vector<bool> open;
 
   Impl(const map::RoadMap& of, map::Participant user)

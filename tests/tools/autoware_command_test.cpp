@@ -8,17 +8,15 @@
 #include <vector>
 
 #include "roadbed/tests/support/program_run.h"
-#include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/tools/town.h"
 
 namespace roadbed::tests {
 namespace {
 
 using testing::HasSubstr;
 
-std::string town() { return data_folder() / "town.xodr"; }
-
 std::vector<std::string> command(const std::string& out) {
-  return {"export", town(), "-o", out, "--profile", "autoware"};
+  return {"export", kTown, "-o", out, "--profile", "autoware"};
 }
 
 TEST(AutowareCommand, TheProjectorStandsBesideTheMapAndLossesAreListed) {

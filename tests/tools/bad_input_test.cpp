@@ -11,11 +11,11 @@
 
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/tools/line_of.h"
+#include "roadbed/tests/tools/town.h"
 
 namespace roadbed::tests {
 namespace {
-
-std::string town_bytes() { return bytes_of(data_folder() / "town.xodr"); }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
@@ -66,12 +66,6 @@ std::vector<std::string> filled_in(std::vector<std::string> words, const std::st
     if (word.rfind("OUT", 0) == 0) word.replace(0, 3, out);
   }
   return words;
-}
-
-std::string line_of(const std::vector<std::string>& words) {
-  std::string line = "roadbed";
-  for (const std::string& word : words) line += " " + word;
-  return line;
 }
 
 TEST(BadInput, MapThatCannotBeUsedIsRefusedByEveryCommandAndLeavesNoOutput) {

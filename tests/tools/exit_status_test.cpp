@@ -15,17 +15,12 @@
 #include "roadbed/tests/support/program_commands.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/tools/line_of.h"
 
 namespace roadbed::tests {
 namespace {
 
 using Words = std::vector<std::string>;
-
-std::string line_of(const Words& words) {
-  std::string line;
-  for (const std::string& word : words) line += (line.empty() ? "" : " ") + word;
-  return line;
-}
 
 /// A command's words and what follows them.
 Words with(Words command, const Words& more) {

@@ -1,17 +1,13 @@
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/tools/golden.h"
 
 namespace roadbed::tests {
 namespace {
-
-std::filesystem::path golden(const std::string& name) {
-  return tests_folder() / "tools/export" / name;
-}
 
 TEST(ExportCommand, WritesTheFormatThatTheSuffixNames) {
   const std::vector<std::vector<std::string>> runs = {
@@ -21,20 +17,22 @@ TEST(ExportCommand, WritesTheFormatThatTheSuffixNames) {
   for (const std::vector<std::string>& options : runs) {
     const TemporaryFolder folder;
     const std::string& name = options.front();
-    std::vector<std::string> arguments = {"export", golden("two_roads.xodr"), "-o", folder / name};
+    std::vector<std::string> arguments = {"export", golden("export/two_roads.xodr"), "-o",
+                                          folder / name};
     arguments.insert(arguments.end(), options.begin() + 1, options.end());
     const ProgramRun run = run_roadbed(arguments);
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(run.out, "");
-    EXPECT_EQ(bytes_of(folder / name), bytes_of(golden(name)));
+    EXPECT_EQ(bytes_of(folder / name), bytes_of(golden("export/" + name)));
   }
 }
 
 TEST(ExportCommand, WritesTheSamePictureFromTheCompiledMap) {
   const TemporaryFolder folder;
   const std::string compiled = folder / "a.rbm";
-  ASSERT_EQ(run_roadbed({"import", golden("two_roads.xodr"), "-o", compiled}).status, 0);
-  ASSERT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.svg"}).status, 0);
+  ASSERT_EQ(run_roadbed({"import", golden("export/two_roads.xodr"), "-o", compiled}).status, 0);
+  ASSERT_EQ(run_roadbed({"export", golden("export/two_roads.xodr"), "-o", folder / "a.svg"}).status,
+            0);
   ASSERT_EQ(run_roadbed({"export", compiled, "-o", folder / "b.svg"}).status, 0);
   EXPECT_EQ(bytes_of(folder / "a.svg"), bytes_of(folder / "b.svg"));
   EXPECT_EQ(bytes_of(folder / "a.svg").substr(0, 5), "<svg ");
@@ -43,22 +41,25 @@ TEST(ExportCommand, WritesTheSamePictureFromTheCompiledMap) {
 TEST(ExportCommand, ReplacesAFileOnlyWithForce) {
   const TemporaryFolder folder;
   const std::string file = folder.write("a.csv", "mine");
-  EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", file}).status, 3);
+  EXPECT_EQ(run_roadbed({"export", golden("export/two_roads.xodr"), "-o", file}).status, 3);
   EXPECT_EQ(bytes_of(file), "mine");
-  EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", file, "--force"}).status, 0);
-  EXPECT_EQ(bytes_of(file), bytes_of(golden("two_roads.csv")));
+  EXPECT_EQ(run_roadbed({"export", golden("export/two_roads.xodr"), "-o", file, "--force"}).status,
+            0);
+  EXPECT_EQ(bytes_of(file), bytes_of(golden("export/two_roads.csv")));
 }
 
 TEST(ExportCommand, LeavesNothingBehindWhenItCannotDoIt) {
   const TemporaryFolder folder;
   const std::string bad = folder.write("bad.xodr", "<OpenDRIVE>");
   const ProgramRun suffix =
-      run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.txt"});
+      run_roadbed({"export", golden("export/two_roads.xodr"), "-o", folder / "a.txt"});
   EXPECT_EQ(suffix.status, 3);
   EXPECT_NE(suffix.err.find(".xodr, .geojson, .gpkg, .fgb, .svg, .html, .csv"), std::string::npos)
       << suffix.err;
   EXPECT_EQ(run_roadbed({"export", bad, "-o", folder / "a.svg"}).status, 3);
-  EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "no/a.svg"}).status, 3);
+  EXPECT_EQ(
+      run_roadbed({"export", golden("export/two_roads.xodr"), "-o", folder / "no/a.svg"}).status,
+      3);
   EXPECT_EQ(files_below(folder.path()), std::vector<std::string>{"bad.xodr"});
 }
 
@@ -67,7 +68,7 @@ TEST(ExportCommand, WritesTheSameGeoPackageAndFlatGeobufEveryTime) {
   for (const std::string suffix : {".gpkg", ".fgb"}) {
     for (const std::string name : {"a", "b"}) {
       const ProgramRun run =
-          run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / (name + suffix)});
+          run_roadbed({"export", golden("export/two_roads.xodr"), "-o", folder / (name + suffix)});
       EXPECT_EQ(run.status, 0) << run.err;
     }
     EXPECT_EQ(bytes_of(folder / ("a" + suffix)), bytes_of(folder / ("b" + suffix)));
@@ -79,7 +80,7 @@ TEST(ExportCommand, WritesTheSameGeoPackageAndFlatGeobufEveryTime) {
 TEST(ExportCommand, PutsAMapOfUnknownSystemAtItsAnchor) {
   const TemporaryFolder folder;
   const ProgramRun run =
-      run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.geojson", "--layer",
+      run_roadbed({"export", golden("export/two_roads.xodr"), "-o", folder / "a.geojson", "--layer",
                    "centrelines", "--anchor", "48.0,9.0"});
   ASSERT_EQ(run.status, 0) << run.err;
   const nlohmann::json document = nlohmann::json::parse(bytes_of(folder / "a.geojson"));
@@ -110,12 +111,12 @@ TEST(ExportCommand, NotesASystemThatProjCannotUse) {
 TEST(ExportCommand, RefusesAnAnchorWhereTheSystemIsKnown) {
   const TemporaryFolder folder;
   const ProgramRun run =
-      run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.geojson", "--crs",
+      run_roadbed({"export", golden("export/two_roads.xodr"), "-o", folder / "a.geojson", "--crs",
                    "EPSG:32632", "--anchor", "48.0,9.0"});
   EXPECT_EQ(run.status, 3);
   EXPECT_NE(run.err.find("is known"), std::string::npos) << run.err;
-  EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.geojson", "--anchor",
-                         "148.0,9.0"})
+  EXPECT_EQ(run_roadbed({"export", golden("export/two_roads.xodr"), "-o", folder / "a.geojson",
+                         "--anchor", "148.0,9.0"})
                 .status,
             2);
   EXPECT_TRUE(files_below(folder.path()).empty());
@@ -123,8 +124,8 @@ TEST(ExportCommand, RefusesAnAnchorWhereTheSystemIsKnown) {
 
 TEST(ExportCommand, RefusesMoreLayersThanTheFormatHolds) {
   const TemporaryFolder folder;
-  const ProgramRun run = run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.fgb",
-                                      "--layer", "lanes", "--layer", "roads"});
+  const ProgramRun run = run_roadbed({"export", golden("export/two_roads.xodr"), "-o",
+                                      folder / "a.fgb", "--layer", "lanes", "--layer", "roads"});
   EXPECT_EQ(run.status, 3);
   EXPECT_NE(run.err.find("at most 1"), std::string::npos) << run.err;
   EXPECT_TRUE(files_below(folder.path()).empty());
@@ -163,7 +164,7 @@ nlohmann::json lost_of(const std::vector<std::string>& words) {
 
 TEST(ExportCommand, SaysWhatOfItsSourceAnotherVersionHasNot) {
   const TemporaryFolder folder;
-  std::string bytes = bytes_of(golden("two_roads.xodr"));
+  std::string bytes = bytes_of(golden("export/two_roads.xodr"));
   bytes.insert(bytes.find("<planView>"), "<type s=\"0\" type=\"town\"/>");
   bytes.insert(bytes.rfind("</road>"),
                "<userData code=\"a\"/><objects><bridge id=\"b\" s=\"1\" "
@@ -224,7 +225,7 @@ TEST(ConvertCommand, WritesWhatImportAndExportWriteForEveryFormat) {
 
 TEST(ConvertCommand, TakesTheOptionsOfExport) {
   const TemporaryFolder folder;
-  const std::string map = golden("two_roads.xodr");
+  const std::string map = golden("export/two_roads.xodr");
   const std::vector<std::string> options{"--crs", "unknown", "--anchor", "48.0,9.0"};
   for (const char* command : {"export", "convert"}) {
     std::vector<std::string> words{command, map, "-o", folder / (command + std::string(".osm"))};
@@ -240,7 +241,8 @@ TEST(ConvertCommand, TakesTheOptionsOfExport) {
 
 TEST(ConvertCommand, NeedsOneOutputAndOptionsThatItsFormatHas) {
   const TemporaryFolder folder;
-  const std::string map = golden("two_roads.xodr"), a = folder / "a.rbm", b = folder / "b.rbm";
+  const std::string map = golden("export/two_roads.xodr"), a = folder / "a.rbm",
+                    b = folder / "b.rbm";
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {map}, {map, a, "-o", b}, {map, a, "--layer", "lanes"}, {map, a, "--anchor", "48,9"}}) {
     std::vector<std::string> line{"convert"};

@@ -1,34 +1,28 @@
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "roadbed/tests/support/program_run.h"
-#include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/tools/golden.h"
 
 namespace roadbed::tests {
 namespace {
 
-std::filesystem::path golden(const std::string& name) {
-  return tests_folder() / "tools/info" / name;
-}
-
 TEST(InfoCommand, PrintsCountsLengthsAreasAndBounds) {
-  const ProgramRun run = run_roadbed({"info", golden("two_roads.xodr")});
+  const ProgramRun run = run_roadbed({"info", golden("info/two_roads.xodr")});
   EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(run.out, bytes_of(golden("two_roads.txt")));
+  EXPECT_EQ(run.out, bytes_of(golden("info/two_roads.txt")));
 }
 
 TEST(InfoCommand, PrintsTheSameAsJson) {
-  const ProgramRun run = run_roadbed({"info", golden("two_roads.xodr"), "--json"});
+  const ProgramRun run = run_roadbed({"info", golden("info/two_roads.xodr"), "--json"});
   EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(run.out, bytes_of(golden("two_roads.json")));
+  EXPECT_EQ(run.out, bytes_of(golden("info/two_roads.json")));
 }
 
 TEST(InfoCommand, SaysTheSameOfACompiledMap) {
   const TemporaryFolder folder;
   const std::string compiled = folder / "two_roads.rbm";
-  ASSERT_EQ(run_roadbed({"import", golden("two_roads.xodr"), "-o", compiled}).status, 0);
-  EXPECT_EQ(run_roadbed({"info", compiled}).out, bytes_of(golden("two_roads.txt")));
+  ASSERT_EQ(run_roadbed({"import", golden("info/two_roads.xodr"), "-o", compiled}).status, 0);
+  EXPECT_EQ(run_roadbed({"info", compiled}).out, bytes_of(golden("info/two_roads.txt")));
 }
 
 TEST(InfoCommand, CountsWhatAScenarioHoldsBesidesItsMap) {
@@ -48,7 +42,7 @@ TEST(InfoCommand, MeasuresRoadAreasWithoutLanes) {
 TEST(InfoCommand, VerifiesACompiledMapAndRefusesADamagedOne) {
   const TemporaryFolder folder;
   const std::string compiled = folder / "two_roads.rbm";
-  ASSERT_EQ(run_roadbed({"import", golden("two_roads.xodr"), "-o", compiled}).status, 0);
+  ASSERT_EQ(run_roadbed({"import", golden("info/two_roads.xodr"), "-o", compiled}).status, 0);
   const ProgramRun whole = run_roadbed({"info", compiled, "--verify"});
   EXPECT_EQ(whole.status, 0) << whole.err;
   EXPECT_NE(whole.out.find("verified"), std::string::npos);

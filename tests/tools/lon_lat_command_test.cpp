@@ -14,16 +14,13 @@
 
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/tools/town.h"
 
 namespace roadbed::tests {
 namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-
-const std::string kTo = "lane:7/0/1@35";
-
-std::string town() { return data_folder() / "town.xodr"; }
 
 json answer_of(std::vector<std::string> words) {
   words.emplace_back("--json");
@@ -41,7 +38,7 @@ std::string lon_lat_of(const std::string& map, const std::string& at) {
 TEST(LonLatPlaces, AreThePointsThatLocateSays) {
   const std::string crossing = data_folder() / "crossing.osm";
   for (const auto& [map, at] : std::vector<std::pair<std::string, std::string>>{
-           {town(), "150,198"}, {crossing, "700.25,300.5"}}) {
+           {kTown, "150,198"}, {crossing, "700.25,300.5"}}) {
     SCOPED_TRACE(map);
     const json there = answer_of({"locate", map, "--at", at}).at("points").at(0);
     const json back = answer_of({"locate", map, "--at", lon_lat_of(map, at)}).at("points").at(0);
@@ -53,23 +50,22 @@ TEST(LonLatPlaces, AreThePointsThatLocateSays) {
 
 TEST(LonLatPlaces, AreTakenWhereverAPlaceIs) {
   const TemporaryFolder folder;
-  const std::string at = lon_lat_of(town(), "150,198");
+  const std::string at = lon_lat_of(kTown, "150,198");
   const auto cost = [](const json& route) { return route.at("cost_s").get<double>(); };
-  const double expected = cost(answer_of({"route", town(), "--from", "150,198", "--to", kTo}));
-  EXPECT_NEAR(cost(answer_of({"route", town(), "--from", at, "--to", kTo})), expected, 1e-5);
-  EXPECT_NEAR(cost(answer_of({"route", town(), "--from", at + ",0deg", "--via", at, "--to", kTo})),
+  const double expected = cost(answer_of({"route", kTown, "--from", "150,198", "--to", kGoal}));
+  EXPECT_NEAR(cost(answer_of({"route", kTown, "--from", at, "--to", kGoal})), expected, 1e-5);
+  EXPECT_NEAR(cost(answer_of({"route", kTown, "--from", at + ",0deg", "--via", at, "--to", kGoal})),
               expected, 1e-5);
-  const std::string pairs = folder.write("pairs.csv", "from,to\n\"" + at + "\"," + kTo + "\n");
-  const json batch = answer_of({"route", town(), "--batch", pairs});
+  const std::string pairs = folder.write("pairs.csv", "from,to\n\"" + at + "\"," + kGoal + "\n");
+  const json batch = answer_of({"route", kTown, "--batch", pairs});
   EXPECT_THAT(batch.dump(), HasSubstr("\"found\":true"));
-  EXPECT_EQ(
-      answer_of({"reach", town(), "--from", at, "--within", "60s"}).at("lanes").size(),
-      answer_of({"reach", town(), "--from", "150,198", "--within", "60s"}).at("lanes").size());
+  EXPECT_EQ(answer_of({"reach", kTown, "--from", at, "--within", "60s"}).at("lanes").size(),
+            answer_of({"reach", kTown, "--from", "150,198", "--within", "60s"}).at("lanes").size());
   const std::string lon_lat = at.substr(7);
   const std::string points =
       folder.write("points.csv", "lat_deg,lon_deg\n" + lon_lat.substr(lon_lat.find(',') + 1) + "," +
                                      lon_lat.substr(0, lon_lat.find(',')) + "\n");
-  const json located = answer_of({"locate", town(), "--points", points}).at("points").at(0);
+  const json located = answer_of({"locate", kTown, "--points", points}).at("points").at(0);
   EXPECT_NEAR(located.at("x_m").get<double>(), 150.0, 1e-6);
 }
 
@@ -90,7 +86,7 @@ TEST(LonLatPlaces, AreTakenByScenarios) {
   EXPECT_EQ(here.at("outcome"), there.at("outcome"));
 }
 
-std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
+std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
   std::vector<std::vector<std::string>> rows;
   std::istringstream lines(csv);
   for (std::string line; std::getline(lines, line);) {
@@ -104,14 +100,14 @@ std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
 TEST(LonLatAnswers, OfAReferenceLineAreThatOfItsPoints) {
   const TemporaryFolder folder;
   const std::string out = folder / "line.csv";
-  ASSERT_EQ(run_roadbed({"reference", town(), "--from", "150,198", "--to", kTo, "-o", out, "--step",
-                         "20", "--lonlat", "--quiet"})
+  ASSERT_EQ(run_roadbed({"reference", kTown, "--from", "150,198", "--to", kGoal, "-o", out,
+                         "--step", "20", "--lonlat", "--quiet"})
                 .status,
             0);
-  const auto rows = rows_of(bytes_of(out));
+  const auto rows = cells_of(bytes_of(out));
   ASSERT_GT(rows.size(), 5U);
   EXPECT_EQ(rows[0][3] + " " + rows[0][4], "lon_deg lat_deg");
-  const json points = answer_of({"locate", town(), "--points", out, "--lonlat"}).at("points");
+  const json points = answer_of({"locate", kTown, "--points", out, "--lonlat"}).at("points");
   for (std::size_t i = 1; i < rows.size(); ++i) {
     EXPECT_NEAR(std::stod(rows[i][3]), points[i - 1].at("lon_deg").get<double>(), 1e-13);
     EXPECT_NEAR(std::stod(rows[i][4]), points[i - 1].at("lat_deg").get<double>(), 1e-13);
@@ -121,19 +117,19 @@ TEST(LonLatAnswers, OfAReferenceLineAreThatOfItsPoints) {
 TEST(LonLatAnswers, OfARouteBeginAndEndWhereItDoes) {
   const TemporaryFolder folder;
   const json route =
-      answer_of({"route", town(), "--from", "lane:1/0/-1@10", "--to", kTo, "--lonlat"});
+      answer_of({"route", kTown, "--from", "lane:1/0/-1@10", "--to", kGoal, "--lonlat"});
   const json& first = route.at("lanes").at(0);
   const std::string place =
       "lonlat:" + first.at("from_lon_deg").dump() + "," + first.at("from_lat_deg").dump();
-  const json there = answer_of({"locate", town(), "--at", place, "--drivable"});
+  const json there = answer_of({"locate", kTown, "--at", place, "--drivable"});
   const json& lane = there.at("points").at(0).at("lanes").at(0);
   EXPECT_EQ(lane.at("lane"), "1/0/-1");
   EXPECT_NEAR(lane.at("s_m").get<double>(), 10.0, 1e-3);
   EXPECT_NEAR(lane.at("d_m").get<double>(), 0.0, 1e-3);
 
   const std::string out = folder / "way.geojson";
-  ASSERT_EQ(run_roadbed({"route", town(), "--from", "lane:1/0/-1@10", "--to", kTo, "--lonlat", "-o",
-                         out, "--quiet"})
+  ASSERT_EQ(run_roadbed({"route", kTown, "--from", "lane:1/0/-1@10", "--to", kGoal, "--lonlat",
+                         "-o", out, "--quiet"})
                 .status,
             0);
   const json way = json::parse(bytes_of(out));
@@ -143,12 +139,12 @@ TEST(LonLatAnswers, OfARouteBeginAndEndWhereItDoes) {
   EXPECT_NEAR(at.at(1).get<double>(), first.at("from_lat_deg").get<double>(), 1e-9);
 
   const std::string reach = folder / "reach.csv";
-  ASSERT_EQ(run_roadbed({"reach", town(), "--from", "lane:1/0/-1@10", "--within", "60s", "--lonlat",
+  ASSERT_EQ(run_roadbed({"reach", kTown, "--from", "lane:1/0/-1@10", "--within", "60s", "--lonlat",
                          "-o", reach})
                 .status,
             0);
-  EXPECT_EQ(rows_of(bytes_of(reach))[0].back(), "to_lat_deg");
-  EXPECT_EQ(rows_of(bytes_of(reach))[1].size(), rows_of(bytes_of(reach))[0].size());
+  EXPECT_EQ(cells_of(bytes_of(reach))[0].back(), "to_lat_deg");
+  EXPECT_EQ(cells_of(bytes_of(reach))[1].size(), cells_of(bytes_of(reach))[0].size());
 }
 
 TEST(LonLatAnswers, AreRefusedWithAReasonWhereTheSystemIsUnknown) {
@@ -168,7 +164,7 @@ TEST(LonLatAnswers, AreRefusedWithAReasonWhereProjIsNotInstalled) {
   const std::filesystem::path program = folder / "bin/roadbed";
   std::filesystem::create_directory(folder / "bin");
   std::filesystem::create_hard_link(program_file(), program);
-  const ProgramRun run = run_program(program, {"locate", town(), "--at", "lonlat:9,48.5"});
+  const ProgramRun run = run_program(program, {"locate", kTown, "--at", "lonlat:9,48.5"});
   EXPECT_NE(run.status, 0);
   EXPECT_THAT(run.err, HasSubstr("libroadbed_proj.so is not installed"));
   EXPECT_EQ(run.out, "");

@@ -10,14 +10,12 @@
 
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/tools/town.h"
 
 namespace roadbed::tests {
 namespace {
 
 constexpr const char* kStart = "lane:1/3/1@6";  // as in data/drive.json
-constexpr const char* kGoal = "lane:7/0/1@35";
-
-std::string town() { return data_folder() / "town.xodr"; }
 
 /// Runs the program, expects status 0, and returns what it printed.
 std::string answer(const std::vector<std::string>& words) {
@@ -36,27 +34,27 @@ nlohmann::json json_answer(std::vector<std::string> words) {
 TEST(MainJob, CompiledMapAnswersAsItsSourceDoes) {
   const TemporaryFolder folder;
   const std::string compiled = folder / "town.rbm";
-  answer({"import", town(), "-o", compiled});
-  EXPECT_EQ(answer({"info", compiled}), answer({"info", town()}));
+  answer({"import", kTown, "-o", compiled});
+  EXPECT_EQ(answer({"info", compiled}), answer({"info", kTown}));
 }
 
 // data/check_links.py, which shares no code with the program, counts the same.
 TEST(MainJob, InfoCountsTheTownAsItsRecipeDoesAndFindsItInOnePiece) {
-  const nlohmann::json info = json_answer({"info", town()});
+  const nlohmann::json info = json_answer({"info", kTown});
   EXPECT_EQ(info.at("roads"), 49);
   EXPECT_EQ(info.at("junctions"), 9);
   EXPECT_EQ(info.at("drivable_component_lanes"), nlohmann::json::array({119}));
 }
 
 TEST(MainJob, TownIsFitForPlanning) {
-  const nlohmann::json answer = json_answer({"validate", town()});
+  const nlohmann::json answer = json_answer({"validate", kTown});
   for (const auto& finding : answer.at("findings")) {
     EXPECT_EQ(finding.at("severity"), "info") << finding.dump();
   }
 }
 
 TEST(MainJob, RouteAcrossTownGoesOverTheCrossroadsAndThreeQuartersRoundTheRoundabout) {
-  const nlohmann::json route = json_answer({"route", town(), "--from", kStart, "--to", kGoal});
+  const nlohmann::json route = json_answer({"route", kTown, "--from", kStart, "--to", kGoal});
   EXPECT_EQ(route.at("found"), true);
   std::vector<std::string> roads;  // one entry per road, whatever its sections
   for (const auto& leg : route.at("lanes")) {
@@ -71,8 +69,8 @@ TEST(MainJob, RouteAcrossTownGoesOverTheCrossroadsAndThreeQuartersRoundTheRounda
 
 TEST(MainJob, ImportOfTheSameMapGivesTheSameBytes) {
   const TemporaryFolder folder;
-  answer({"import", town(), "-o", folder / "one.rbm", "--threads", "1"});
-  answer({"import", town(), "-o", folder / "two.rbm", "--threads", "2"});
+  answer({"import", kTown, "-o", folder / "one.rbm", "--threads", "1"});
+  answer({"import", kTown, "-o", folder / "two.rbm", "--threads", "2"});
   EXPECT_EQ(bytes_of(folder / "one.rbm"), bytes_of(folder / "two.rbm"));
 }
 
@@ -124,7 +122,7 @@ TEST(MainJob, OctreeOfTheTownIsMadeFromItsScans) {
 
 TEST(MainJob, QuietKeepsNotesFromStderr) {
   const TemporaryFolder folder;
-  const ProgramRun run = run_roadbed({"import", town(), "-o", folder / "t.rbm", "--quiet"});
+  const ProgramRun run = run_roadbed({"import", kTown, "-o", folder / "t.rbm", "--quiet"});
   EXPECT_EQ(run.status, 0);
   EXPECT_EQ(run.err + run.out, "");
 }

@@ -7,13 +7,11 @@
 #include <vector>
 
 #include "roadbed/tests/support/program_run.h"
-#include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/tools/town.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tests {
 namespace {
-
-const std::string kTown = data_folder() / "town.xodr";
 
 tools::Json document_of(const ProgramRun& run) {
   return tools::Json::parse(run.out, nullptr, false);

@@ -29,10 +29,10 @@ TEST(MapFixCommand, WritesAndSaysEveryChange) {
   EXPECT_THAT(said.out, HasSubstr("(link.lane-one-sided)"));
   const ProgramRun run = run_roadbed({"map", "fix", faulty, "-o", mended, "--json"});
   EXPECT_EQ(run.status, 0) << run.err;
-  const Json json = Json::parse(run.out);
-  EXPECT_EQ(json["roadbed_map_fix"], 1);
-  EXPECT_GE(json["repairs"].size(), 1u);
-  EXPECT_LT(json["after"]["warnings"], json["before"]["warnings"]);
+  const Json document = Json::parse(run.out);
+  EXPECT_EQ(document["roadbed_map_fix"], 1);
+  EXPECT_GE(document["repairs"].size(), 1u);
+  EXPECT_LT(document["after"]["warnings"], document["before"]["warnings"]);
   EXPECT_EQ(run_roadbed({"map", "diff", data_folder() / "town.xodr", mended}).out, "0 changes\n");
   EXPECT_EQ(run_roadbed({"map", "fix", faulty, "-o", mended}).status, 3);
 }

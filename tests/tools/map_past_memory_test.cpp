@@ -42,9 +42,9 @@ class MapPastMemory : public testing::Test {
   Json certificate(const std::string& map) const {
     const std::string file = folder_ / "proof.json";
     audit(map, {"--certificate", file, "--force"});
-    Json json = Json::parse(bytes_of(file));
-    EXPECT_EQ(json.at("map").erase("file") + json.at("map").erase("sha256"), 2U);
-    return json;
+    Json document = Json::parse(bytes_of(file));
+    EXPECT_EQ(document.at("map").erase("file") + document.at("map").erase("sha256"), 2U);
+    return document;
   }
 
   TemporaryFolder folder_;

@@ -21,7 +21,7 @@ using testing::HasSubstr;
 using Json = nlohmann::json;
 using Words = std::vector<std::string>;
 
-const std::string kTown = data_folder() / "town.bt";
+const std::string kOctree = data_folder() / "town.bt";
 
 class OccupancyParts : public testing::Test {
  protected:
@@ -54,28 +54,28 @@ class OccupancyParts : public testing::Test {
 };
 
 TEST_F(OccupancyParts, CutApartArePutTogetherToTheSameFile) {
-  const Json box = info(kTown).at("bounds");
+  const Json box = info(kOctree).at("bounds");
   const double middle = std::round(5.0 * box.at("min_x_m").get<double>() + 200.0) / 5.0;
-  const std::string west =
-                        made({"crop", kTown, "--bbox=-1e4,-1e4," + std::to_string(middle) + ",1e4"},
-                             "west.bt"),
-                    east =
-                        made({"crop", kTown, "--bbox=" + std::to_string(middle) + ",-1e4,1e4,1e4"},
-                             "east.bt");
+  const std::string west = made(
+                        {"crop", kOctree, "--bbox=-1e4,-1e4," + std::to_string(middle) + ",1e4"},
+                        "west.bt"),
+                    east = made(
+                        {"crop", kOctree, "--bbox=" + std::to_string(middle) + ",-1e4,1e4,1e4"},
+                        "east.bt");
   EXPECT_NEAR(info(west).at("bounds").at("max_x_m").get<double>(), middle, 1e-9);
   EXPECT_NEAR(info(east).at("bounds").at("min_x_m").get<double>(), middle, 1e-9);
   EXPECT_EQ(bytes_of(made({"merge", east, west}, "whole.bt")),
-            bytes_of(made({"build", kTown}, "town.bt")));
+            bytes_of(made({"build", kOctree}, "town.bt")));
 }
 
 TEST_F(OccupancyParts, KeepTheirTilesOrGetOthers) {
-  const std::string whole = made({"build", kTown}, "town.bt");
-  const std::string tiles = made({"merge", kTown, "--tiles", "40"}, "town.tiles"),
+  const std::string whole = made({"build", kOctree}, "town.bt");
+  const std::string tiles = made({"merge", kOctree, "--tiles", "40"}, "town.tiles"),
                     part = made({"crop", tiles, "--heights=-100,1"}, "low.tiles");
   EXPECT_EQ(info(part).at("side_m"), info(tiles).at("side_m"));
   EXPECT_LE(info(part).at("bounds").at("max_z_m").get<double>(), 1.2);
   EXPECT_EQ(bytes_of(made({"merge", tiles, part}, "again.bt")), bytes_of(whole));
-  const ProgramRun unsaid = run({"merge", kTown, "-o", folder_ / "no.tiles"});
+  const ProgramRun unsaid = run({"merge", kOctree, "-o", folder_ / "no.tiles"});
   EXPECT_EQ(unsaid.status, 3);
   EXPECT_THAT(unsaid.err, HasSubstr("give --tiles SIDE"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "no.tiles"));
@@ -96,7 +96,7 @@ TEST_F(OccupancyParts, AreCutByAPolygonInDegreesWhereTheSystemIsKnown) {
   const std::string part = made({"crop", in_utm(), "--polygon", file}, "yard.bt");
   EXPECT_EQ(info(part).at("occupied").at("volume_m3"), 2 * 0.125);
   EXPECT_EQ(info(part).at("crs"), "EPSG:32632");
-  const ProgramRun unknown = run({"crop", kTown, "--polygon", file, "-o", folder_ / "no.bt"});
+  const ProgramRun unknown = run({"crop", kOctree, "--polygon", file, "-o", folder_ / "no.bt"});
   EXPECT_EQ(unknown.status, 3);
   EXPECT_THAT(unknown.err, HasSubstr("town.bt: names no coordinate system"));
 }
@@ -104,10 +104,10 @@ TEST_F(OccupancyParts, AreCutByAPolygonInDegreesWhereTheSystemIsKnown) {
 TEST_F(OccupancyParts, AreCutAroundALaneOfTheirMap) {
   const std::string map = data_folder() / "town.xodr";
   const std::string near =
-      made({"crop", kTown, "--map", map, "--within", "lane:1/0/-1,8m"}, "near.bt", 0);
+      made({"crop", kOctree, "--map", map, "--within", "lane:1/0/-1,8m"}, "near.bt", 0);
   const auto leaves = [](const std::string& file) { return info(file).at("leaves").get<int>(); };
   EXPECT_GT(leaves(near), 0);
-  EXPECT_LT(leaves(near), leaves(kTown) / 2);
+  EXPECT_LT(leaves(near), leaves(kOctree) / 2);
 }
 
 // Of the street along y = 198.25, as far as the route goes.
@@ -131,7 +131,7 @@ TEST_F(OccupancyParts, AreCutAlongARouteOfTheirMap) {
     east_m = std::max(east_m, x_m);
   }
   const Json box =
-      info(made({"crop", kTown, "--map", map, "--within", "route:" + route + ",5m"}, "along.bt"))
+      info(made({"crop", kOctree, "--map", map, "--within", "route:" + route + ",5m"}, "along.bt"))
           .at("bounds");
   const double half_cell_m = 0.1, reach_m = 5.0;
   EXPECT_NEAR(box.at("min_x_m").get<double>(), west_m - reach_m, 2.0 * half_cell_m);
@@ -140,8 +140,8 @@ TEST_F(OccupancyParts, AreCutAlongARouteOfTheirMap) {
   EXPECT_NEAR(box.at("max_y_m").get<double>(), y_m + reach_m, 2.0 * half_cell_m);
   const std::string other =
       folder_.write("other.json", R"({"found": true, "lanes": [{"lane": "9"}]})");
-  const ProgramRun unknown = run({"crop", kTown, "--map", map, "--within", "route:" + other + ",5m",
-                                  "-o", folder_ / "none.bt"});
+  const ProgramRun unknown = run({"crop", kOctree, "--map", map, "--within",
+                                  "route:" + other + ",5m", "-o", folder_ / "none.bt"});
   EXPECT_EQ(unknown.status, 3);
   EXPECT_THAT(unknown.err, HasSubstr("/lanes/0/lane: lane 9 is not in the map"));
 }
@@ -168,39 +168,43 @@ TEST_F(OccupancyParts, HoldTheCellsWhoseMiddleIsOnTheEdge) {
 }
 
 TEST_F(OccupancyParts, InTilesAreComparedAsOne) {
-  const std::string tiles = made({"merge", kTown, "--tiles", "100"}, "town.tiles");
-  const ProgramRun same = run({"diff", tiles, kTown, "--json"});
+  const std::string tiles = made({"merge", kOctree, "--tiles", "100"}, "town.tiles");
+  const ProgramRun same = run({"diff", tiles, kOctree, "--json"});
   EXPECT_EQ(same.status, 0) << same.err << same.out;
   EXPECT_GT(Json::parse(same.out).at("stayed_cells").get<int>(), 100'000);
-  const std::string part = made({"crop", kTown, "--bbox=0,0,300,400"}, "part.bt");
+  const std::string part = made({"crop", kOctree, "--bbox=0,0,300,400"}, "part.bt");
   const Json of_tiles = Json::parse(run({"diff", part, tiles, "--json"}).out),
-             of_octree = Json::parse(run({"diff", part, kTown, "--json"}).out);
+             of_octree = Json::parse(run({"diff", part, kOctree, "--json"}).out);
   EXPECT_EQ(of_tiles, of_octree);
   EXPECT_GT(of_tiles.at("appeared_cells").get<int>(), 1000);
 }
 
 TEST_F(OccupancyParts, OfDifferentGridsAreToldByTheirFiles) {
   const std::string coarse = in_utm("coarse.bt");
-  const ProgramRun refused = run({"diff", kTown, coarse});
+  const ProgramRun refused = run({"diff", kOctree, coarse});
   EXPECT_EQ(refused.status, 3);
   EXPECT_THAT(refused.err,
-              HasSubstr(coarse + ": cells of 0.5 m, needs cells of 0.2 m as " + kTown));
+              HasSubstr(coarse + ": cells of 0.5 m, needs cells of 0.2 m as " + kOctree));
 }
 
 TEST_F(OccupancyParts, OfNothingAreAnEmptyOctreeAndANo) {
-  const std::string none = made({"crop", kTown, "--heights=500,600"}, "none.bt", 1);
+  const std::string none = made({"crop", kOctree, "--heights=500,600"}, "none.bt", 1);
   EXPECT_EQ(info(none).at("leaves"), 0);
 }
 
 TEST_F(OccupancyParts, AreRefusedInOneLineAndLeaveNothing) {
   const std::string coarse = in_utm("coarse.bt"), out = folder_ / "out.bt";
   for (const auto& [words, status, text] : std::vector<std::tuple<Words, int, std::string>>{
-           {{"merge", kTown, coarse}, 3, "coarse.bt: cells of 0.5 m, needs cells of 0.2 m as"},
-           {{"crop", kTown}, 2, "one of --bbox, --polygon and --within, or --heights, is required"},
-           {{"crop", kTown, "--heights=2,1"}, 2, "the first has to be below the second"},
-           {{"crop", kTown, "--within", "lane:1/0/-1,8m"}, 2, "--within and --map need each other"},
-           {{"crop", kTown, "--bbox=0,0,1,1", "--tiles", "50"}, 2, "ends in .tiles"},
-           {{"export", kTown}, 2, "ends in none of .pcd .ply .pgm .tif .geojson .gpkg .fgb"}}) {
+           {{"merge", kOctree, coarse}, 3, "coarse.bt: cells of 0.5 m, needs cells of 0.2 m as"},
+           {{"crop", kOctree},
+            2,
+            "one of --bbox, --polygon and --within, or --heights, is required"},
+           {{"crop", kOctree, "--heights=2,1"}, 2, "the first has to be below the second"},
+           {{"crop", kOctree, "--within", "lane:1/0/-1,8m"},
+            2,
+            "--within and --map need each other"},
+           {{"crop", kOctree, "--bbox=0,0,1,1", "--tiles", "50"}, 2, "ends in .tiles"},
+           {{"export", kOctree}, 2, "ends in none of .pcd .ply .pgm .tif .geojson .gpkg .fgb"}}) {
     Words line = words;
     line.insert(line.end(), {"-o", out});
     const ProgramRun refused = run(line);
@@ -222,7 +226,7 @@ TEST_F(OccupancyParts, AreRectanglesInDegreesWhereTheSystemIsKnownElseInMetres) 
   EXPECT_NEAR(first.at(1).get<double>(), corner[0].y(), 1e-9);
   EXPECT_EQ(feature.at("properties").at("from_z_m"), 100.0);
   EXPECT_EQ(feature.at("properties").at("to_z_m"), 100.5);
-  const Json raw = Json::parse(bytes_of(made({"export", kTown}, "town.geojson")));
+  const Json raw = Json::parse(bytes_of(made({"export", kOctree}, "town.geojson")));
   EXPECT_TRUE(raw.at("crs").is_null());
 }
 

@@ -11,17 +11,16 @@
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/tools/batch/batch_runs.h"
+#include "roadbed/tests/tools/town.h"
 
 namespace roadbed::tests {
 namespace {
 
 using testing::HasSubstr;
 
-std::string town() { return bytes_of(data_folder() / "town.xodr"); }
-
 TEST(Outputs, ThatAreInputsAreRefusedHoweverTheyAreNamed) {
   const TemporaryFolder folder;
-  const std::string input = folder.write("town.xodr", town());
+  const std::string input = folder.write("town.xodr", town_bytes());
   std::filesystem::create_symlink("town.xodr", folder / "link.rbm");
   std::filesystem::create_hard_link(input, folder / "second.rbm");
   for (const char* output : {"town.xodr", "link.rbm", "second.rbm", "../x/town.xodr"}) {
@@ -31,7 +30,7 @@ TEST(Outputs, ThatAreInputsAreRefusedHoweverTheyAreNamed) {
     const ProgramRun run = run_roadbed({"import", input, "-o", named, "--force"});
     EXPECT_EQ(run.status, 2) << named;
     EXPECT_THAT(run.err, HasSubstr("is an input")) << named;
-    EXPECT_EQ(bytes_of(input), town());
+    EXPECT_EQ(bytes_of(input), town_bytes());
   }
 }
 
@@ -50,7 +49,8 @@ TEST(Outputs, ThatAScenarioReadsAreRefused) {
 
 TEST(Outputs, OfOneNameAreRefused) {
   const TemporaryFolder folder;
-  const std::string input = folder.write("town.xodr", town()), output = (folder / "f").string();
+  const std::string input = folder.write("town.xodr", town_bytes()),
+                    output = (folder / "f").string();
   const ProgramRun run = run_roadbed({"validate", input, "--junit", output, "--sarif", output});
   EXPECT_EQ(run.status, 2);
   EXPECT_THAT(run.err, HasSubstr("--junit and --sarif are both"));

@@ -6,34 +6,27 @@
 #include <fstream>
 #include <string>
 
+#include "roadbed/tests/support/holds.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/tools/town.h"
 
 namespace roadbed::tests {
 namespace {
 
-const std::string& town() {
-  static const std::string file = data_folder() / "town.xodr";
-  return file;
-}
-
-bool holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 TEST(MapPageCommand, ShowsWhatOtherCommandsWrote) {
   const TemporaryFolder folder;
-  const ProgramRun route = run_roadbed({"route", town(), "--from", "lane:1/0/-1@10", "--to",
+  const ProgramRun route = run_roadbed({"route", kTown, "--from", "lane:1/0/-1@10", "--to",
                                         "lane:7/0/1@55", "--alternatives", "2", "--json"});
   const ProgramRun reach =
-      run_roadbed({"reach", town(), "--from", "lane:1/0/-1@10", "--within", "300m", "--json"});
-  const ProgramRun found = run_roadbed({"validate", town(), "--json"});
+      run_roadbed({"reach", kTown, "--from", "lane:1/0/-1@10", "--within", "300m", "--json"});
+  const ProgramRun found = run_roadbed({"validate", kTown, "--json"});
   const std::string drive = folder.write("drive.csv",
                                          "t_s,x_m,y_m,heading_rad,speed_mps,acceleration_mps2,"
                                          "steering_rad,curvature_per_m\n"
                                          "0,150,198,0,10,0,0,0\n2,170,198,0,10,0,0,0\n");
   const ProgramRun run = run_roadbed(
-      {"export", town(), "-o", folder / "town.html", "--route", folder.write("r.json", route.out),
+      {"export", kTown, "-o", folder / "town.html", "--route", folder.write("r.json", route.out),
        "--reach", folder.write("near.json", reach.out), "--trajectory", drive, "--findings",
        folder.write("found.json", found.out), "--occupancy", data_folder() / "town.bt"});
   ASSERT_EQ(run.status, 0) << run.err;
@@ -46,8 +39,8 @@ TEST(MapPageCommand, ShowsWhatOtherCommandsWrote) {
 
 TEST(MapPageCommand, NamesTheLinesOfTheSource) {
   const TemporaryFolder folder;
-  ASSERT_EQ(run_roadbed({"export", town(), "-o", folder / "town.html"}).status, 0);
-  std::ifstream source(town());
+  ASSERT_EQ(run_roadbed({"export", kTown, "-o", folder / "town.html"}).status, 0);
+  std::ifstream source(kTown);
   long line = 1;
   for (std::string text; std::getline(source, text); ++line) {
     if (holds(text, "<road ") && holds(text, " id=\"7\"")) break;
@@ -62,13 +55,13 @@ TEST(MapPageCommand, RefusesWhatIsNotForItsMapOrForAPage) {
       R"({"found":true,"length_m":1,"cost_s":1,"lanes":[{"lane":"no/0/1","from_s_m":0,"to_s_m":1}]})");
   const std::string none = folder.write("none.json", R"({"found":false,"reason":"far away"})");
   const std::string page = folder / "town.html";
-  const ProgramRun run = run_roadbed({"export", town(), "-o", page, "--route", other});
+  const ProgramRun run = run_roadbed({"export", kTown, "-o", page, "--route", other});
   EXPECT_EQ(run.status, 3);
   EXPECT_TRUE(holds(run.err, "the map has no lane \"no/0/1\"")) << run.err;
-  EXPECT_EQ(run_roadbed({"export", town(), "-o", page, "--route", none}).status, 3);
-  EXPECT_EQ(run_roadbed({"export", town(), "-o", page, "--findings", other}).status, 3);
+  EXPECT_EQ(run_roadbed({"export", kTown, "-o", page, "--route", none}).status, 3);
+  EXPECT_EQ(run_roadbed({"export", kTown, "-o", page, "--findings", other}).status, 3);
   EXPECT_FALSE(std::filesystem::exists(page));
-  EXPECT_EQ(run_roadbed({"export", town(), "-o", folder / "a.svg", "--route", none}).status, 2);
+  EXPECT_EQ(run_roadbed({"export", kTown, "-o", folder / "a.svg", "--route", none}).status, 2);
 }
 
 TEST(MapPageCommand, RefusesAMapAsExportDoes) {
@@ -82,17 +75,17 @@ TEST(MapPageCommand, RefusesAMapAsExportDoes) {
 
 TEST(DiffPageCommand, WritesAPageBesideItsAnswer) {
   const TemporaryFolder folder;
-  std::string text = bytes_of(town());
+  std::string text = bytes_of(kTown);
   text.replace(text.find("\"driving\""), 9, "\"parking\"");
   const std::string changed = folder.write("new.xodr", text), page = folder / "d.html";
-  const ProgramRun plain = run_roadbed({"diff", town(), changed});
-  const ProgramRun run = run_roadbed({"diff", town(), changed, "-o", page});
+  const ProgramRun plain = run_roadbed({"diff", kTown, changed});
+  const ProgramRun run = run_roadbed({"diff", kTown, changed, "-o", page});
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.out, plain.out);
   EXPECT_TRUE(holds(bytes_of(page), "; driving before, parking after\""));
-  EXPECT_EQ(run_roadbed({"diff", town(), changed, "-o", page}).status, 3);
-  EXPECT_EQ(run_roadbed({"diff", town(), changed, "-o", page, "--force"}).status, 1);
-  EXPECT_EQ(run_roadbed({"diff", town(), changed, "-o", folder / "d.svg"}).status, 2);
+  EXPECT_EQ(run_roadbed({"diff", kTown, changed, "-o", page}).status, 3);
+  EXPECT_EQ(run_roadbed({"diff", kTown, changed, "-o", page, "--force"}).status, 1);
+  EXPECT_EQ(run_roadbed({"diff", kTown, changed, "-o", folder / "d.svg"}).status, 2);
 }
 
 }  // namespace

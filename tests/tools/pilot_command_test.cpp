@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "roadbed/tests/support/program_run.h"
-#include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/tools/town.h"
 
 namespace roadbed::tools {
 namespace {
 
 using testing::HasSubstr;
+using tests::kTown;
 using tests::ProgramRun;
 using tests::run_roadbed_reading;
 
-const std::string kTown = (tests::data_folder() / "town.xodr").string();
 const std::vector<std::string> kPilot{"pilot", kTown, "--goal", "lane:6/0/-1@100"};
 
 std::string line(double t_s) {

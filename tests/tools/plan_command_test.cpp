@@ -20,12 +20,12 @@ TEST(PlanCommand, PassesALorryAndShowsEveryCandidate) {
   const std::string out = (folder / "plan").string();
   const ProgramRun run = run_roadbed({"plan", scene("pass_lorry.json"), "-o", out, "--json"});
   ASSERT_EQ(run.status, 0) << run.err;
-  const auto json = nlohmann::json::parse(run.out);
-  EXPECT_TRUE(json["found"]);
-  EXPECT_EQ(json["candidates"], 5396);
-  EXPECT_GT(json["chosen"]["d_e_m"], 1.5);
-  EXPECT_GT(json["rejected"]["collision"], 500);
-  EXPECT_EQ(json["chosen"]["terms"].size(), 12u);
+  const auto document = nlohmann::json::parse(run.out);
+  EXPECT_TRUE(document["found"]);
+  EXPECT_EQ(document["candidates"], 5396);
+  EXPECT_GT(document["chosen"]["d_e_m"], 1.5);
+  EXPECT_GT(document["rejected"]["collision"], 500);
+  EXPECT_EQ(document["chosen"]["terms"].size(), 12u);
   EXPECT_EQ(files_below(out),
             (std::vector<std::string>{"candidates.csv", "plan.svg", "trajectory.csv"}));
   const std::string csv = bytes_of(folder / "plan/candidates.csv");

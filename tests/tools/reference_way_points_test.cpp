@@ -4,29 +4,16 @@
 
 #include <cmath>
 #include <numbers>
-#include <sstream>
 #include <vector>
 
 #include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/tools/csv_rows.h"
 
 namespace roadbed::tests {
 namespace {
 
 using testing::HasSubstr;
 using Rows = std::vector<std::vector<double>>;
-
-Rows rows_of(const std::filesystem::path& file) {
-  std::istringstream lines(bytes_of(file));
-  std::string line, field;
-  std::getline(lines, line);
-  Rows rows;
-  while (std::getline(lines, line)) {
-    std::istringstream fields(line);
-    rows.emplace_back();
-    while (std::getline(fields, field, ',')) rows.back().push_back(std::stod(field));
-  }
-  return rows;
-}
 
 // Eight points of a circle of 20 m around (100, 50).
 std::string circle() {

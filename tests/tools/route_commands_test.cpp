@@ -12,7 +12,8 @@
 #include <vector>
 
 #include "roadbed/tests/support/program_run.h"
-#include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/tools/csv_rows.h"
+#include "roadbed/tests/tools/town.h"
 
 namespace roadbed::tests {
 namespace {
@@ -21,26 +22,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::string kTown = (data_folder() / "town.xodr").string();
 const std::string kFrom = "lane:1/0/-1@10", kTo = "lane:7/0/1@55";
-
-std::vector<std::vector<double>> rows_of(const std::string& file) {
-  std::istringstream text(bytes_of(file));
-  std::string line;
-  std::getline(text, line);
-  EXPECT_EQ(line,
-            "s_m,x_m,y_m,heading_rad,curvature_per_m,curvature_rate_per_m2,left_m,right_m,"
-            "speed_limit_mps");
-  std::vector<std::vector<double>> rows;
-  while (std::getline(text, line)) {
-    std::istringstream fields(line);
-    rows.emplace_back();
-    for (std::string field; std::getline(fields, field, ',');) {
-      rows.back().push_back(std::stod(field));
-    }
-  }
-  return rows;
-}
 
 TEST(RouteCommand, PrintsOneJsonDocumentWithConnectedLanes) {
   const ProgramRun run = run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "--json"});
@@ -274,6 +256,10 @@ TEST(ReferenceCommand, RowsAreOneStepApartAndDescribeOneCurve) {
   const ProgramRun run =
       run_roadbed({"reference", kTown, "--from", kFrom, "--to", kTo, "-o", file});
   ASSERT_EQ(run.status, 0) << run.err;
+  const std::string csv = bytes_of(file);
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "s_m,x_m,y_m,heading_rad,curvature_per_m,curvature_rate_per_m2,left_m,right_m,"
+            "speed_limit_mps");
   const auto rows = rows_of(file);
   ASSERT_GT(rows.size(), 2000U);
   for (std::size_t i = 1; i + 1 < rows.size(); ++i) {

@@ -8,12 +8,10 @@
 #include <string>
 
 #include "roadbed/tests/support/program_run.h"
-#include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/tools/town.h"
 
 namespace roadbed::tests {
 namespace {
-
-std::string town() { return data_folder() / "town.xodr"; }
 
 /// Sets a variable of the environment for as long as it lives.
 class Variable {
@@ -44,7 +42,7 @@ class FakeNetconvert : public TemporaryFolder {
 
 TEST(SumoCommand, PlainFilesStandBesideEachOther) {
   const TemporaryFolder folder;
-  const ProgramRun run = run_roadbed({"export", town(), "-o", folder / "a.b.nod.xml", "--json"});
+  const ProgramRun run = run_roadbed({"export", kTown, "-o", folder / "a.b.nod.xml", "--json"});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(files_below(folder.path()),
             (std::vector<std::string>{"a.b.con.xml", "a.b.edg.xml", "a.b.netccfg", "a.b.nod.xml",
@@ -62,21 +60,21 @@ TEST(SumoCommand, PlainFilesStandBesideEachOther) {
 TEST(SumoCommand, NoneIsWrittenWhereOneIsInTheWay) {
   const TemporaryFolder folder;
   folder.write("a.tll.xml", "mine");
-  EXPECT_EQ(run_roadbed({"export", town(), "-o", folder / "a.nod.xml"}).status, 3);
+  EXPECT_EQ(run_roadbed({"export", kTown, "-o", folder / "a.nod.xml"}).status, 3);
   EXPECT_EQ(files_below(folder.path()), std::vector<std::string>{"a.tll.xml"});
   EXPECT_EQ(bytes_of(folder / "a.tll.xml"), "mine");
-  EXPECT_EQ(run_roadbed({"convert", town(), folder / "a.nod.xml", "-f"}).status, 0);
+  EXPECT_EQ(run_roadbed({"convert", kTown, folder / "a.nod.xml", "-f"}).status, 0);
   EXPECT_NE(bytes_of(folder / "a.tll.xml"), "mine");
 }
 
 TEST(SumoCommand, SeveralFilesAreNoStandardOutput) {
-  EXPECT_EQ(run_roadbed({"export", town(), "-o", "-", "--format", "nod.xml"}).status, 2);
+  EXPECT_EQ(run_roadbed({"export", kTown, "-o", "-", "--format", "nod.xml"}).status, 2);
 }
 
 TEST(SumoCommand, SaysInALineWhatToDoWithoutNetconvert) {
   const TemporaryFolder folder;
   const Variable path("PATH", folder.path().string()), home("SUMO_HOME", "");
-  const ProgramRun run = run_roadbed({"export", town(), "-o", folder / "a.net.xml"});
+  const ProgramRun run = run_roadbed({"export", kTown, "-o", folder / "a.net.xml"});
   EXPECT_EQ(run.status, 3);
   EXPECT_NE(run.err.find("install SUMO"), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("-o x.nod.xml"), std::string::npos) << run.err;
@@ -92,7 +90,7 @@ TEST(SumoCommand, NetIsWhatNetconvertMakesButForTheTime) {
   const TemporaryFolder folder;
   const Variable home("SUMO_HOME", sumo.path().string());
   const ProgramRun run =
-      run_roadbed({"export", town(), "-o", folder / "a.net.xml", "--json", "--quiet"});
+      run_roadbed({"export", kTown, "-o", folder / "a.net.xml", "--json", "--quiet"});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(bytes_of(folder / "a.net.xml"),
             "<?xml version=\"1.0\"?>\n<!-- roadbed, netconvert -->\n<net a=\"1\">\n</net>\n");
@@ -104,7 +102,7 @@ TEST(SumoCommand, NothingIsWrittenWhereNetconvertFails) {
   const FakeNetconvert sumo("echo 'Error: no such thing' >&2\nexit 1\n");
   const TemporaryFolder folder;
   const Variable home("SUMO_HOME", sumo.path().string());
-  const ProgramRun run = run_roadbed({"export", town(), "-o", folder / "a.net.xml"});
+  const ProgramRun run = run_roadbed({"export", kTown, "-o", folder / "a.net.xml"});
   EXPECT_EQ(run.status, 3);
   EXPECT_NE(run.err.find("no such thing"), std::string::npos) << run.err;
   EXPECT_TRUE(files_below(folder.path()).empty());

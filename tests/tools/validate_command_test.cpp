@@ -1,45 +1,42 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/tools/golden.h"
 
 namespace roadbed::tests {
 namespace {
 
-std::filesystem::path golden(const std::string& name) {
-  return tests_folder() / "tools/validate" / name;
-}
-
 TEST(ValidateCommand, PrintsOneLinePerFindingAndASummary) {
-  const ProgramRun run = run_roadbed({"validate", golden("gap.xodr")});
+  const ProgramRun run = run_roadbed({"validate", golden("validate/gap.xodr")});
   EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(run.out, bytes_of(golden("gap.txt")));
+  EXPECT_EQ(run.out, bytes_of(golden("validate/gap.txt")));
   EXPECT_EQ(run.err, "");
 }
 
 TEST(ValidateCommand, FailsOnWarningsWhereAsked) {
-  EXPECT_EQ(run_roadbed({"validate", golden("gap.xodr"), "--fail-on", "warning"}).status, 1);
-  EXPECT_EQ(
-      run_roadbed({"validate", golden("gap.xodr"), "--fail-on", "warning", "--max-gap", "0.2"})
-          .status,
-      0);
+  EXPECT_EQ(run_roadbed({"validate", golden("validate/gap.xodr"), "--fail-on", "warning"}).status,
+            1);
+  EXPECT_EQ(run_roadbed({"validate", golden("validate/gap.xodr"), "--fail-on", "warning",
+                         "--max-gap", "0.2"})
+                .status,
+            0);
 }
 
 TEST(ValidateCommand, FailsOnErrorsAndPrintsOneJsonDocument) {
-  const ProgramRun run = run_roadbed({"validate", golden("broken.xodr"), "--json"});
+  const ProgramRun run = run_roadbed({"validate", golden("validate/broken.xodr"), "--json"});
   EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(run.out, bytes_of(golden("broken.json")));
+  EXPECT_EQ(run.out, bytes_of(golden("validate/broken.json")));
   EXPECT_TRUE(nlohmann::json::accept(run.out));
 }
 
 TEST(ValidateCommand, RefusesSeveritiesItDoesNotKnow) {
-  EXPECT_EQ(run_roadbed({"validate", golden("gap.xodr"), "--fail-on", "panic"}).status, 2);
+  EXPECT_EQ(run_roadbed({"validate", golden("validate/gap.xodr"), "--fail-on", "panic"}).status, 2);
 }
 
 TEST(ValidateCommand, SaysWhichMapIsMissing) {
@@ -97,8 +94,8 @@ TEST(ValidateCommand, NeedsAMapUnlessItListsRules) {
 /// All outputs for the golden file with a gap.
 struct Outputs {
   Outputs() {
-    run = run_roadbed({"validate", golden("gap.xodr"), "--junit", folder / "f.xml", "--sarif",
-                       folder / "f.sarif", "--geojson", folder / "f.geojson", "--svg",
+    run = run_roadbed({"validate", golden("validate/gap.xodr"), "--junit", folder / "f.xml",
+                       "--sarif", folder / "f.sarif", "--geojson", folder / "f.geojson", "--svg",
                        folder / "f.svg"});
   }
   TemporaryFolder folder;
@@ -150,9 +147,10 @@ TEST(ValidateCommand, DrawsFindingsAndWritesThemAsALayer) {
 TEST(ValidateCommand, KeepsOutputsThatExist) {
   const TemporaryFolder folder;
   const std::string file = folder.write("f.sarif", "mine");
-  EXPECT_EQ(run_roadbed({"validate", golden("gap.xodr"), "--sarif", file}).status, 3);
+  EXPECT_EQ(run_roadbed({"validate", golden("validate/gap.xodr"), "--sarif", file}).status, 3);
   EXPECT_EQ(bytes_of(file), "mine");
-  EXPECT_EQ(run_roadbed({"validate", golden("gap.xodr"), "--sarif", file, "--force"}).status, 0);
+  EXPECT_EQ(
+      run_roadbed({"validate", golden("validate/gap.xodr"), "--sarif", file, "--force"}).status, 0);
   EXPECT_NE(bytes_of(file), "mine");
 }
 

@@ -28,24 +28,24 @@ struct Line {
   }
 };
 
-struct Problem {
+struct OffsetLine {
   Line line;
   Quintic offset;
   double s;
 };
 
-std::vector<Problem> random_problems(int count) {
+std::vector<OffsetLine> random_offset_lines(int count) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  std::vector<Problem> problems;
+  std::vector<OffsetLine> offset_lines;
   for (int i = 0; i < count; ++i) {
     const Line line{{0.1 * unit(random), 0.01 * unit(random), 1e-3 * unit(random),
                      1e-4 * unit(random), 1e-5 * unit(random)}};
     const Quintic offset({3.0 * unit(random), 0.2 * unit(random), 0.05 * unit(random)},
                          {3.0 * unit(random), 0.0, 0.0}, 15.0);
-    problems.push_back({line, offset, 2.0 + unit(random)});
+    offset_lines.push_back({line, offset, 2.0 + unit(random)});
   }
-  return problems;
+  return offset_lines;
 }
 
 // The candidate as a complex velocity dp/ds = (1 − κ d + i d′) e^{iψ} in long double, and its
@@ -62,9 +62,9 @@ Real slope(const Quintic& offset, Real s) {
   }
   return value;
 }
-Real along(const Problem& p, Real s) { return 1 - p.line.curvature(s) * lateral(p.offset, s); }
-Real stretch(const Problem& p, Real s) { return std::hypot(along(p, s), slope(p.offset, s)); }
-Real heading(const Problem& p, Real s) {
+Real along(const OffsetLine& p, Real s) { return 1 - p.line.curvature(s) * lateral(p.offset, s); }
+Real stretch(const OffsetLine& p, Real s) { return std::hypot(along(p, s), slope(p.offset, s)); }
+Real heading(const OffsetLine& p, Real s) {
   return p.line.heading(s) + std::atan2(slope(p.offset, s), along(p, s));
 }
 
@@ -79,7 +79,7 @@ Real derivative(const Function& f, Real s, Real step) {
 
 TEST(OffsetCurve, CurvatureAndItsDerivativesAreThoseOfTheCurveItself) {
   int checked = 0;
-  for (const Problem& p : random_problems(300)) {
+  for (const OffsetLine& p : random_offset_lines(300)) {
     const auto exact = offset_curve(p.line.at(p.s), p.offset.at(p.s), 0.3);
     if (!exact) continue;
     ++checked;
@@ -101,7 +101,7 @@ TEST(OffsetCurve, CurvatureAndItsDerivativesAreThoseOfTheCurveItself) {
 }
 
 TEST(OffsetCurve, DirectionIsThatOfTheVelocity) {
-  for (const Problem& p : random_problems(300)) {
+  for (const OffsetLine& p : random_offset_lines(300)) {
     const auto exact = offset_curve(p.line.at(p.s), p.offset.at(p.s), 0.3);
     if (!exact) continue;
     const Real s = static_cast<Real>(p.s);
@@ -127,7 +127,7 @@ TEST(OffsetCurve, IsRejectedWhereTheOffsetReachesTheCentreOfCurvature) {
 }
 
 TEST(Mixed, MakesSpeedAndTurnQuadraticInAParameterOfTheOffset) {
-  for (const Problem& p : random_problems(100)) {
+  for (const OffsetLine& p : random_offset_lines(100)) {
     const auto line = p.line.at(p.s);
     const auto d0 = p.offset.at(p.s), d1 = Quintic({}, {.value = 1.0}, 15.0).at(p.s);
     const FrameVelocity u = frame_velocity(line, d0);

@@ -10,16 +10,16 @@
 namespace roadbed::geometry {
 namespace {
 
-struct Problem {
+struct BoundaryProblem {
   BoundaryState start, end;
   double length;
 };
 
-std::vector<Problem> random_problems(int count) {
+std::vector<BoundaryProblem> random_boundary_problems(int count) {
   std::mt19937 random(20261121);
   std::uniform_real_distribution<double> value(-3.5, 3.5), slope(-0.3, 0.3), second(-0.1, 0.1),
       length(1.0, 60.0);
-  std::vector<Problem> problems;
+  std::vector<BoundaryProblem> problems;
   for (int i = 0; i < count; ++i) {
     problems.push_back({{value(random), slope(random), second(random)},
                         {value(random), slope(random), second(random)},
@@ -29,7 +29,7 @@ std::vector<Problem> random_problems(int count) {
 }
 
 // Paper eq. 13–18 as a 6×6 linear system.
-Eigen::VectorXd solve_densely(const Problem& p) {
+Eigen::VectorXd solve_densely(const BoundaryProblem& p) {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, 6);
   for (int end = 0; end < 2; ++end) {
     const double l = end == 0 ? 0.0 : p.length;
@@ -45,7 +45,7 @@ Eigen::VectorXd solve_densely(const Problem& p) {
 }
 
 TEST(Quintic, MeetsBothBoundaryStates) {
-  for (const Problem& p : random_problems(1000)) {
+  for (const BoundaryProblem& p : random_boundary_problems(1000)) {
     const Quintic quintic(p.start, p.end, p.length);
     const auto start = quintic.at(0.0), end = quintic.at(p.length);
     EXPECT_NEAR(start[0], p.start.value, 1e-12);
@@ -58,7 +58,7 @@ TEST(Quintic, MeetsBothBoundaryStates) {
 }
 
 TEST(Quintic, AgreesWithADenseSolveOfThePapersSystem) {
-  for (const Problem& p : random_problems(1000)) {
+  for (const BoundaryProblem& p : random_boundary_problems(1000)) {
     const Eigen::VectorXd expected = solve_densely(p);
     const Quintic quintic(p.start, p.end, p.length);
     for (int j = 0; j < 6; ++j) {
@@ -70,7 +70,7 @@ TEST(Quintic, AgreesWithADenseSolveOfThePapersSystem) {
 }
 
 TEST(Quintic, DerivativesAreThoseOfThePowers) {
-  for (const Problem& p : random_problems(100)) {
+  for (const BoundaryProblem& p : random_boundary_problems(100)) {
     const Quintic quintic(p.start, p.end, p.length);
     const double l = 0.37 * p.length;
     for (int order = 0; order < 6; ++order) {
@@ -87,7 +87,7 @@ TEST(Quintic, DerivativesAreThoseOfThePowers) {
 }
 
 TEST(Quintic, IsLinearInItsBoundaryStates) {
-  for (const Problem& p : random_problems(100)) {
+  for (const BoundaryProblem& p : random_boundary_problems(100)) {
     const Quintic from_start(p.start, {}, p.length), to_end({}, p.end, p.length),
         both(p.start, p.end, p.length);
     const double l = 0.6 * p.length;

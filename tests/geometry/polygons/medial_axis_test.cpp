@@ -6,21 +6,13 @@
 #include <cmath>
 #include <random>
 
+#include "roadbed/tests/geometry/polygons/ring_distance.h"
+
 namespace roadbed::geometry {
 namespace {
 
 using Eigen::Vector2d;
 using testing::SizeIs;
-
-double distance_to_ring_m(const Ring& ring, const Vector2d& point) {
-  double least = 1e300;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Vector2d a = ring[i], b = ring[(i + 1) % ring.size()];
-    const double fraction = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (point - a - fraction * (b - a)).norm());
-  }
-  return least;
-}
 
 double distance_to_boundary_m(const Polygon& polygon, const Vector2d& point) {
   double least = distance_to_ring_m(polygon.outer, point);

@@ -6,20 +6,12 @@
 #include <cmath>
 #include <random>
 
+#include "roadbed/tests/geometry/polygons/ring_distance.h"
+
 namespace roadbed::geometry {
 namespace {
 
 using Eigen::Vector2d;
-
-double distance_to_ring_m(const Ring& ring, const Vector2d& point) {
-  double least_m = 1e300;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Vector2d a = ring[i], along = ring[(i + 1) % ring.size()] - a;
-    const double fraction = std::clamp((point - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    least_m = std::min(least_m, (a + fraction * along - point).norm());
-  }
-  return least_m;
-}
 
 Ring random_ring(std::mt19937& random) {
   std::uniform_real_distribution<double> coordinate(0.0, 3.0);

@@ -23,20 +23,20 @@ void add(StationRange& range, double s_m) {
   range = {std::min(range.from_s_m, s_m), std::max(range.to_s_m, s_m)};
 }
 
-constexpr double kStep_m = 0.04;
+constexpr double kRaster_m = 0.04;
 
 /// Overlaps of all pairs by sampling the plane.
 std::map<std::pair<LaneId, LaneId>, Sampled> sampled_overlaps(const RoadMap& road_map,
                                                               double extent_m) {
   std::map<std::pair<LaneId, LaneId>, Sampled> overlaps;
-  for (double x = -extent_m; x < extent_m; x += kStep_m) {
-    for (double y = -extent_m; y < extent_m; y += kStep_m) {
+  for (double x = -extent_m; x < extent_m; x += kRaster_m) {
+    for (double y = -extent_m; y < extent_m; y += kRaster_m) {
       const auto here = road_map.locate({x, y}, 0.0, true);
       for (const LaneMatch& one : here) {
         for (const LaneMatch& other : here) {
           if (one.place.lane >= other.place.lane) continue;
           Sampled& overlap = overlaps[{one.place.lane, other.place.lane}];
-          overlap.area_m2 += kStep_m * kStep_m;
+          overlap.area_m2 += kRaster_m * kRaster_m;
           add(overlap.on_one, one.place.s_m);
           add(overlap.on_other, other.place.s_m);
         }

@@ -38,7 +38,7 @@ std::vector<std::string> contents() {
   return {"x", "<OpenDRIVE/>\n", random_bytes(100'000), repeated("road ", 600'000), ""};
 }
 
-std::string refusal_of(const std::string& bytes, std::size_t most = kMostUnpackedBytes) {
+std::string unpack_refusal(const std::string& bytes, std::size_t most = kMostUnpackedBytes) {
   try {
     unpacked(bytes, "map.gz", most);
   } catch (const InputError& error) {
@@ -76,9 +76,9 @@ TEST(Unpack, RefusesWhatIsCutOffAnywhereOrFollowedBySomething) {
   for (const Pack pack : kPacks) {
     const std::string packed = pack(bytes);
     for (std::size_t size = 4; size < packed.size(); ++size) {
-      EXPECT_THAT(refusal_of(packed.substr(0, size)), HasSubstr("ends within its")) << size;
+      EXPECT_THAT(unpack_refusal(packed.substr(0, size)), HasSubstr("ends within its")) << size;
     }
-    EXPECT_THAT(refusal_of(packed + "and more"), HasSubstr("cannot be unpacked"));
+    EXPECT_THAT(unpack_refusal(packed + "and more"), HasSubstr("cannot be unpacked"));
   }
 }
 
@@ -90,7 +90,7 @@ TEST(Unpack, RefusesOrIgnoresAnyChangedBit) {
       std::string changed = packed;
       changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ (1 << bit % 8));
       if (!is_packed(changed)) continue;
-      if (!refusal_of(changed).empty()) continue;
+      if (!unpack_refusal(changed).empty()) continue;
       EXPECT_EQ(unpacked(changed, "a"), bytes) << bit;
     }
   }
@@ -99,13 +99,13 @@ TEST(Unpack, RefusesOrIgnoresAnyChangedBit) {
 TEST(Unpack, RefusesWhatUnpacksToMoreThanTheLimitAndNothingBelow) {
   constexpr std::size_t most = 3'000'000;
   for (const Pack pack : kPacks) {
-    EXPECT_EQ(refusal_of(pack(std::string(most, '\0')), most), "");
+    EXPECT_EQ(unpack_refusal(pack(std::string(most, '\0')), most), "");
     const std::string packed = pack(std::string(most + 1, '\0'));
-    EXPECT_EQ(refusal_of(packed, most),
+    EXPECT_EQ(unpack_refusal(packed, most),
               "map.gz: unpacks to more than 3000000 bytes, needs no more for " +
                   std::to_string(packed.size()) +
                   " packed ones; unpack it to a file first, if it is no bomb");
-    EXPECT_THAT(refusal_of(repeated(pack(std::string(most / 3, '\0')), 4), most),
+    EXPECT_THAT(unpack_refusal(repeated(pack(std::string(most / 3, '\0')), 4), most),
                 HasSubstr("unpacks to more than"));
   }
 }

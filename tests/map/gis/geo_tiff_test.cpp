@@ -14,38 +14,36 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/tests/support/number_at.h"
+
 namespace roadbed::map {
 namespace {
 
 using testing::ElementsAre;
-
-template <typename Number>
-Number at(const std::string& bytes, std::size_t place) {
-  Number number;
-  std::memcpy(&number, bytes.data() + place, sizeof number);
-  return number;
-}
+using tests::number_at;
 
 /// The fields of a TIFF file's first directory, each as its numbers, or a text as its bytes.
-std::map<int, std::vector<double>> fields_of(const std::string& file) {
+std::map<int, std::vector<double>> tiff_fields(const std::string& file) {
   EXPECT_EQ(file.substr(0, 4), std::string("II*\0", 4));
   std::map<int, std::vector<double>> fields;
-  const auto directory = at<std::uint32_t>(file, 4);
+  const auto directory = number_at<std::uint32_t>(file, 4);
   int last = 0;
-  for (std::size_t i = 0; i < at<std::uint16_t>(file, directory); ++i) {
+  for (std::size_t i = 0; i < number_at<std::uint16_t>(file, directory); ++i) {
     const std::size_t entry = directory + 2 + 12 * i;
-    const int tag = at<std::uint16_t>(file, entry), type = at<std::uint16_t>(file, entry + 2);
-    const auto count = at<std::uint32_t>(file, entry + 4);
+    const int tag = number_at<std::uint16_t>(file, entry),
+              type = number_at<std::uint16_t>(file, entry + 2);
+    const auto count = number_at<std::uint32_t>(file, entry + 4);
     EXPECT_GT(tag, last) << "fields stand in order";
     last = tag;
     const std::size_t size = type == 2 ? 1 : type == 3 ? 2 : type == 4 ? 4 : 8;
-    const std::size_t from = size * count <= 4 ? entry + 8 : at<std::uint32_t>(file, entry + 8);
+    const std::size_t from =
+        size * count <= 4 ? entry + 8 : number_at<std::uint32_t>(file, entry + 8);
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t place = from + size * k;
       fields[tag].push_back(type == 2   ? static_cast<double>(file[place])
-                            : type == 3 ? at<std::uint16_t>(file, place)
-                            : type == 4 ? at<std::uint32_t>(file, place)
-                                        : at<double>(file, place));
+                            : type == 3 ? number_at<std::uint16_t>(file, place)
+                            : type == 4 ? number_at<std::uint32_t>(file, place)
+                                        : number_at<double>(file, place));
     }
   }
   return fields;
@@ -53,7 +51,7 @@ std::map<int, std::vector<double>> fields_of(const std::string& file) {
 
 /// The numbers of all bands, row by row from the north, band after band.
 std::vector<float> numbers_of(const std::string& file) {
-  const auto fields = fields_of(file);
+  const auto fields = tiff_fields(file);
   std::string all;
   for (std::size_t i = 0; i < fields.at(273).size(); ++i) {
     std::string strip(1 << 20, '\0');
@@ -97,14 +95,14 @@ TEST(GeoTiff, HoldsTheNumbersWithTheNorthFirst) {
 }
 
 TEST(GeoTiff, SaysWhereItLiesAndInWhichSystem) {
-  const auto fields = fields_of(write_geotiff(random_raster(3, 2, 1), 25832));
+  const auto fields = tiff_fields(write_geotiff(random_raster(3, 2, 1), 25832));
   EXPECT_THAT(fields.at(256), ElementsAre(3));
   EXPECT_THAT(fields.at(257), ElementsAre(2));
   EXPECT_THAT(fields.at(33550), ElementsAre(0.5, 0.5, 0.0));
   EXPECT_THAT(fields.at(33922), ElementsAre(0, 0, 0, 1000.0, 2001.0, 0));  // the north-west corner
   EXPECT_THAT(fields.at(34735), ElementsAre(1, 1, 1, 3, 1024, 0, 1, 1, 1025, 0, 1, 1,  //
                                             3072, 0, 1, 25832));
-  const auto unknown = fields_of(write_geotiff(random_raster(3, 2, 1), {}));
+  const auto unknown = tiff_fields(write_geotiff(random_raster(3, 2, 1), {}));
   EXPECT_THAT(unknown.at(34735), ElementsAre(1, 1, 1, 1, 1025, 0, 1, 1));
 }
 

@@ -2,24 +2,18 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <random>
 #include <set>
 
 #include "roadbed/map/gis/layers.h"
 #include "roadbed/map/gis/packed_tree.h"
 #include "roadbed/tests/support/made_maps.h"
+#include "roadbed/tests/support/number_at.h"
 
 namespace roadbed::map {
 namespace {
 
-template <typename T>
-T at(const std::string& bytes, std::size_t offset) {
-  T value{};
-  EXPECT_LE(offset + sizeof value, bytes.size());
-  std::memcpy(&value, bytes.data() + offset, sizeof value);
-  return value;
-}
+using tests::number_at;
 
 /// A table of FlatBuffers, read by the format's description.
 struct Table {
@@ -27,21 +21,22 @@ struct Table {
   std::size_t place;
 
   std::size_t field(int n) const {
-    const std::size_t fields = place - static_cast<std::size_t>(at<std::int32_t>(bytes, place));
+    const std::size_t fields =
+        place - static_cast<std::size_t>(number_at<std::int32_t>(bytes, place));
     const std::size_t offset = 4 + 2 * static_cast<std::size_t>(n);
-    if (offset >= at<std::uint16_t>(bytes, fields)) return 0;
-    const std::uint16_t inside = at<std::uint16_t>(bytes, fields + offset);
+    if (offset >= number_at<std::uint16_t>(bytes, fields)) return 0;
+    const std::uint16_t inside = number_at<std::uint16_t>(bytes, fields + offset);
     return inside == 0 ? 0 : place + inside;
   }
   std::size_t vector(int n) const {
     const std::size_t where = field(n);
-    return where + at<std::uint32_t>(bytes, where);
+    return where + number_at<std::uint32_t>(bytes, where);
   }
   Table table(int n) const { return {bytes, vector(n)}; }
 };
 
 Table root(const std::string& bytes, std::size_t size_prefix) {
-  return {bytes, size_prefix + 4 + at<std::uint32_t>(bytes, size_prefix + 4)};
+  return {bytes, size_prefix + 4 + number_at<std::uint32_t>(bytes, size_prefix + 4)};
 }
 
 Layer numbered_points(const std::vector<Eigen::Vector3d>& points) {
@@ -59,25 +54,25 @@ TEST(WriteFlatgeobuf, HoldsEachFeatureWithItsValues) {
                                             "fgb\x00",
                                             8));
   const Table header = root(bytes, 8);
-  EXPECT_EQ(at<std::uint64_t>(bytes, header.field(8)), 3u);
-  EXPECT_EQ(at<std::uint8_t>(bytes, header.field(2)), 1u);
-  EXPECT_EQ(header.field(10), 0u);                                      // no system
-  std::size_t place = 12 + at<std::uint32_t>(bytes, 8) + (3 + 1) * 40;  // after the index
+  EXPECT_EQ(number_at<std::uint64_t>(bytes, header.field(8)), 3u);
+  EXPECT_EQ(number_at<std::uint8_t>(bytes, header.field(2)), 1u);
+  EXPECT_EQ(header.field(10), 0u);                                             // no system
+  std::size_t place = 12 + number_at<std::uint32_t>(bytes, 8) + (3 + 1) * 40;  // after the index
   std::set<std::int64_t> numbers;
   for (int i = 0; i < 3; ++i) {
     const Table feature = root(bytes, place);
     const std::size_t values = feature.vector(1);
-    EXPECT_EQ(at<std::uint32_t>(bytes, values), 2u + 8u);
-    EXPECT_EQ(at<std::uint16_t>(bytes, values + 4), 0u);
-    const auto number = at<std::int64_t>(bytes, values + 6);
+    EXPECT_EQ(number_at<std::uint32_t>(bytes, values), 2u + 8u);
+    EXPECT_EQ(number_at<std::uint16_t>(bytes, values + 4), 0u);
+    const auto number = number_at<std::int64_t>(bytes, values + 6);
     const Table geometry = feature.table(0);
     const Eigen::Vector3d expected =
         layer.features[static_cast<std::size_t>(number)].shape[0][0][0];
-    EXPECT_EQ(at<double>(bytes, geometry.vector(1) + 4), expected.x());
-    EXPECT_EQ(at<double>(bytes, geometry.vector(1) + 12), expected.y());
-    EXPECT_EQ(at<double>(bytes, geometry.vector(2) + 4), expected.z());
+    EXPECT_EQ(number_at<double>(bytes, geometry.vector(1) + 4), expected.x());
+    EXPECT_EQ(number_at<double>(bytes, geometry.vector(1) + 12), expected.y());
+    EXPECT_EQ(number_at<double>(bytes, geometry.vector(2) + 4), expected.z());
     numbers.insert(number);
-    place += 4 + at<std::uint32_t>(bytes, place);
+    place += 4 + number_at<std::uint32_t>(bytes, place);
   }
   EXPECT_EQ(place, bytes.size());
   EXPECT_EQ(numbers, (std::set<std::int64_t>{0, 1, 2}));
@@ -85,8 +80,8 @@ TEST(WriteFlatgeobuf, HoldsEachFeatureWithItsValues) {
 
 TEST(WriteFlatgeobuf, OfAnEmptyLayerHasNoIndex) {
   const std::string bytes = write_flatgeobuf(numbered_points({}), "");
-  EXPECT_EQ(bytes.size(), 12 + at<std::uint32_t>(bytes, 8));
-  EXPECT_EQ(at<std::uint16_t>(bytes, root(bytes, 8).field(9)), 0u);
+  EXPECT_EQ(bytes.size(), 12 + number_at<std::uint32_t>(bytes, 8));
+  EXPECT_EQ(number_at<std::uint16_t>(bytes, root(bytes, 8).field(9)), 0u);
 }
 
 /// Offsets of the leaves that meet a box, found as a reader of the format does.
@@ -108,11 +103,12 @@ std::set<std::uint64_t> search(const std::string& tree, std::size_t leaves,
       end = std::min(first + 16, level_end);
     }
     for (std::size_t node = first; node < end; ++node) {
-      const Eigen::AlignedBox2d box(
-          Eigen::Vector2d(at<double>(tree, node * 40), at<double>(tree, node * 40 + 8)),
-          Eigen::Vector2d(at<double>(tree, node * 40 + 16), at<double>(tree, node * 40 + 24)));
+      const Eigen::AlignedBox2d box(Eigen::Vector2d(number_at<double>(tree, node * 40),
+                                                    number_at<double>(tree, node * 40 + 8)),
+                                    Eigen::Vector2d(number_at<double>(tree, node * 40 + 16),
+                                                    number_at<double>(tree, node * 40 + 24)));
       if (!box.intersects(asked)) continue;
-      const auto offset = at<std::uint64_t>(tree, node * 40 + 32);
+      const auto offset = number_at<std::uint64_t>(tree, node * 40 + 32);
       if (node >= nodes - leaves) {
         found.insert(offset);
       } else {

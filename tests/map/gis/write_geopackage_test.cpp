@@ -3,15 +3,17 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
-#include <cstring>
 #include <pugixml.hpp>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/gis/layers.h"
 #include "roadbed/tests/support/made_maps.h"
+#include "roadbed/tests/support/number_at.h"
 
 namespace roadbed::map {
 namespace {
+
+using tests::number_at;
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -50,13 +52,6 @@ class Database {
   sqlite3* database_ = nullptr;
 };
 
-template <typename T>
-T at(const std::string& bytes, std::size_t offset) {
-  T value{};
-  std::memcpy(&value, bytes.data() + offset, sizeof value);
-  return value;
-}
-
 TEST(WriteGeopackage, IsWholeAndNamesItsLayers) {
   const auto layers = make_layers(tests::three_roads_in_a_row().build());
   const Database database(write_geopackage(layers, ""));
@@ -85,14 +80,14 @@ TEST(WriteGeopackage, HoldsAPolygonAsWellKnownBinary) {
   const std::string& blob = rows[0][0];
   ASSERT_EQ(blob.size(), 8u + 32u + 1 + 4 + 4 + 4 + 5 * 16);
   EXPECT_EQ(blob.substr(0, 2), "GP");
-  EXPECT_EQ(at<std::int32_t>(blob, 4), -1);
-  EXPECT_EQ(at<double>(blob, 8), 0.0);     // least x
-  EXPECT_EQ(at<double>(blob, 16), 100.0);  // greatest x
-  EXPECT_EQ(at<double>(blob, 24), -3.5);
-  EXPECT_EQ(at<double>(blob, 32), 0.0);
-  EXPECT_EQ(at<std::uint32_t>(blob, 41), 3u);  // polygon
-  EXPECT_EQ(at<std::uint32_t>(blob, 45), 1u);  // of one ring
-  EXPECT_EQ(at<std::uint32_t>(blob, 49), 5u);  // of five points
+  EXPECT_EQ(number_at<std::int32_t>(blob, 4), -1);
+  EXPECT_EQ(number_at<double>(blob, 8), 0.0);     // least x
+  EXPECT_EQ(number_at<double>(blob, 16), 100.0);  // greatest x
+  EXPECT_EQ(number_at<double>(blob, 24), -3.5);
+  EXPECT_EQ(number_at<double>(blob, 32), 0.0);
+  EXPECT_EQ(number_at<std::uint32_t>(blob, 41), 3u);  // polygon
+  EXPECT_EQ(number_at<std::uint32_t>(blob, 45), 1u);  // of one ring
+  EXPECT_EQ(number_at<std::uint32_t>(blob, 49), 5u);  // of five points
   EXPECT_EQ(blob.substr(53, 16), blob.substr(53 + 64, 16));
 }
 

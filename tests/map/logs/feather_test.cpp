@@ -9,17 +9,13 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/tests/support/number_at.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map {
 namespace {
 
-template <class Number>
-Number at(const std::string& bytes, std::size_t place) {
-  Number number;
-  std::memcpy(&number, bytes.data() + place, sizeof number);
-  return number;
-}
+using tests::number_at;
 
 void put(std::string& bytes, std::size_t place, std::uint32_t number) {
   std::memcpy(bytes.data() + place, &number, sizeof number);
@@ -29,12 +25,14 @@ void put(std::string& bytes, std::size_t place, std::uint32_t number) {
 std::string with_repeated_batch(const std::string& bytes, std::uint32_t times) {
   constexpr std::size_t tail = 10, block = 24, batches = 3;
   const std::size_t end = bytes.size() - tail;
-  const std::size_t begin = end - at<std::uint32_t>(bytes, end);
+  const std::size_t begin = end - number_at<std::uint32_t>(bytes, end);
   std::string footer = bytes.substr(begin, end - begin);
-  const std::size_t table = at<std::uint32_t>(footer, 0);
-  const std::size_t fields = table - static_cast<std::size_t>(at<std::int32_t>(footer, table));
-  const std::size_t place = table + at<std::uint16_t>(footer, fields + 4 + 2 * batches);
-  const std::string first = footer.substr(place + at<std::uint32_t>(footer, place) + 4, block);
+  const std::size_t table = number_at<std::uint32_t>(footer, 0);
+  const std::size_t fields =
+      table - static_cast<std::size_t>(number_at<std::int32_t>(footer, table));
+  const std::size_t place = table + number_at<std::uint16_t>(footer, fields + 4 + 2 * batches);
+  const std::string first =
+      footer.substr(place + number_at<std::uint32_t>(footer, place) + 4, block);
   put(footer, place, static_cast<std::uint32_t>(footer.size() - place));
   footer += std::string(4, '\0');
   put(footer, footer.size() - 4, times);

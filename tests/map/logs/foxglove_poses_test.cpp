@@ -5,17 +5,15 @@
 
 #include <cmath>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/logs/foxglove_schemas.h"
 #include "roadbed/map/logs/log_drive.h"
 #include "roadbed/map/logs/protobuf.h"
+#include "roadbed/tests/map/logs/logged_drive.h"
 
 namespace roadbed::map {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr std::int64_t kStart_ns = 1'700'000'000'123'456'789;
 
 ProtoWriter time_of(std::int64_t ns) {
   return ProtoWriter()
@@ -75,21 +73,7 @@ std::string log_of(const std::vector<Topic>& topics) {
   return writer.finish();
 }
 
-LogDrive drive_in(const std::string& bytes, const std::string& topic = {}) {
-  return drive_of_log([&](const LogVisitor& visitor) { parse_log(bytes, "a log", visitor); },
-                      "a log", topic);
-}
-
-std::string fault_of(const std::string& bytes) {
-  try {
-    drive_in(bytes);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-void expect_is_the_drive(const LogDrive& drive) {
+void expect_has_the_poses(const LogDrive& drive) {
   ASSERT_EQ(drive.poses.size(), 10u);
   for (int i = 0; i < 10; ++i) {
     const TimedPose& at = drive.poses[static_cast<std::size_t>(i)];
@@ -100,12 +84,12 @@ void expect_is_the_drive(const LogDrive& drive) {
 }
 
 TEST(FoxglovePoses, AreADriveAsTransformsOneOrManyInAMessageAndAsPoses) {
-  expect_is_the_drive(drive_in(log_of({{"/tf", "foxglove.FrameTransform", transform}})));
-  expect_is_the_drive(drive_in(log_of({{"/pose", "foxglove.PoseInFrame", pose}})));
+  expect_has_the_poses(drive_in(log_of({{"/tf", "foxglove.FrameTransform", transform}})));
+  expect_has_the_poses(drive_in(log_of({{"/pose", "foxglove.PoseInFrame", pose}})));
   const auto both = [](int i) {
     return ProtoWriter().bytes(1, transform(i)).bytes(1, transform(i)).bytes();
   };
-  expect_is_the_drive(drive_in(log_of({{"/tf", "foxglove.FrameTransforms", both}})));
+  expect_has_the_poses(drive_in(log_of({{"/tf", "foxglove.FrameTransforms", both}})));
 }
 
 TEST(FoxglovePoses, RowsOfRoadbedAreMeantBeforeOtherTopicsAndComeBackBitForBit) {
@@ -122,14 +106,14 @@ TEST(FoxglovePoses, RowsOfRoadbedAreMeantBeforeOtherTopicsAndComeBackBitForBit) 
       EXPECT_EQ(value, i + 0.1 * field++);
     }
   }
-  expect_is_the_drive(drive_in(log, "/tf"));
+  expect_has_the_poses(drive_in(log, "/tf"));
 }
 
 TEST(FoxglovePoses, InAnotherEncodingAreNoDriveAndInNobodysWay) {
   const auto json = [](int) { return std::string("{}"); };
   const std::string log = log_of({{"/json", "foxglove.FrameTransform", json, "json"},
                                   {"/pose", "foxglove.PoseInFrame", pose}});
-  expect_is_the_drive(drive_in(log));
+  expect_has_the_poses(drive_in(log));
 }
 
 TEST(FoxglovePoses, CutOffOrOfAnotherKindAreRefused) {

@@ -9,6 +9,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/tests/map/logs/logged_drive.h"
 #include "roadbed/tests/support/endless_rows.h"
 #include "roadbed/tests/support/log_bytes.h"
 #include "roadbed/tests/support/made_log.h"
@@ -27,8 +28,6 @@ using tests::odometry_message;
 using tests::Recorded;
 using tests::transform_message;
 
-constexpr std::int64_t kStart_ns = 1'700'000'000'123'456'789;
-
 std::vector<McapMessage> odometry(bool is_big_endian = false) {
   std::vector<McapMessage> messages;
   for (int i = 0; i < 20; ++i) {
@@ -37,11 +36,6 @@ std::vector<McapMessage> odometry(bool is_big_endian = false) {
         {t_ns + 5, odometry_message(t_ns, 0.1 * i + 1e6, -0.2 * i, 0.05 * i, 1.5, is_big_endian)});
   }
   return messages;
-}
-
-LogDrive drive_in(const std::string& bytes, const std::string& topic = {}) {
-  return drive_of_log([&](const LogVisitor& visitor) { parse_log(bytes, "a log", visitor); },
-                      "a log", topic);
 }
 
 void expect_is_the_drive(const LogDrive& drive) {
@@ -54,15 +48,6 @@ void expect_is_the_drive(const LogDrive& drive) {
     EXPECT_EQ(at.speed_mps, 1.5);
     EXPECT_NEAR(std::atan2(at.pose.linear()(1, 0), at.pose.linear()(0, 0)), 0.05 * i, 1e-12);
   }
-}
-
-std::string fault_of(const std::string& bytes, const std::string& topic = {}) {
-  try {
-    drive_in(bytes, topic);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(LogDrive, IsTheSameFromEveryContainerAndPacking) {
@@ -217,19 +202,6 @@ void add_moving(std::vector<Recorded>& log, const std::string& topic, const std:
   log.push_back({topic, kTransforms, transform_message(kStart_ns, parent, child, x_m, 0.0)});
   log.push_back({topic, kTransforms,
                  transform_message(kStart_ns + 500'000'000, parent, child, x_m + 1.0, 0.0)});
-}
-
-LogDrive drive_in(const std::vector<Recorded>& log, const std::string& topic = {}) {
-  return drive_of_log(tests::through(log, kStart_ns), "a log", topic);
-}
-
-std::string fault_of(const std::vector<Recorded>& log, const std::string& topic = {}) {
-  try {
-    drive_in(log, topic);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 void expect_starts_at(const LogDrive& drive, const std::string& topic, double x_m) {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include <cstring>
 #include <map>
 #include <random>
 #include <stdexcept>
@@ -11,9 +10,12 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/logs/log.h"
 #include "roadbed/map/logs/unpack_block.h"
+#include "roadbed/tests/support/number_at.h"
 
 namespace roadbed::map {
 namespace {
+
+using tests::number_at;
 
 struct Written {
   std::string topic;
@@ -43,13 +45,6 @@ std::string written(const std::vector<Written>& all) {
   for (const Written& one : all) writer.write(topics[one.topic], one.time_ns, one.bytes);
   writer.add_metadata("about", {{"who", "nobody"}});
   return writer.finish();
-}
-
-template <class Number>
-Number number_at(const std::string& bytes, std::size_t at) {
-  Number value;  // little-endian, as the machines that run this
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
 }
 
 TEST(McapWriter, WritesWhatTheReaderReads) {

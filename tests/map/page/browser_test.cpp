@@ -6,23 +6,20 @@
 #include <limits>
 #include <sstream>
 #include <string>
-#include <string_view>
 
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/page/diff_page.h"
 #include "roadbed/map/page/map_page.h"
 #include "roadbed/tests/support/browser.h"
+#include "roadbed/tests/support/holds.h"
 #include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map {
 namespace {
 
+using tests::holds;
 using tests::page_after_scripts;
-
-bool holds(const std::string& page, std::string_view part) {
-  return page.find(part) != std::string::npos;
-}
 
 /// The page with a script of a test at its end.
 std::string with_script(std::string page, const std::string& script) {

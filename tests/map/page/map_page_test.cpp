@@ -8,16 +8,14 @@
 
 #include "roadbed/map/formats.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/tests/support/holds.h"
 #include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map {
 namespace {
 
-// Not testing::HasSubstr, which would print the whole page.
-bool holds(const std::string& page, std::string_view part) {
-  return page.find(part) != std::string::npos;
-}
+using tests::holds;
 
 TEST(MapPage, AsksNothingOfANetwork) {
   const std::string page = write_map_page(tests::three_roads_in_a_row().build());

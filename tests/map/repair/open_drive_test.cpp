@@ -66,7 +66,7 @@ std::vector<std::string> lane_links(const std::string& bytes) {
 }
 
 /// What holds of every repair that adds links, and the repaired file.
-RepairedFile expect_better(const std::string& bytes) {
+RepairedFile expect_links_added(const std::string& bytes) {
   RepairedFile file = repair_file(bytes, "a map");
   EXPECT_EQ(file.after, count(validate_bytes(file.bytes, "a map").findings));
   EXPECT_LT(file.after, file.before);
@@ -79,7 +79,7 @@ TEST(RepairOpenDrive, LinksLanesThatGoOnWhereASectionEnds) {
   const std::string sections = lane_section(0, {{1, 3.0}, {-1, 3.5}, {-2, 2.0, 0.0, "sidewalk"}}) +
                                lane_section(20, {{1, 3.0}, {-1, 3.5}}) +
                                lane_section(45, {{1, 3.0}, {-1, 3.5}});
-  const RepairedFile file = expect_better(open_drive(straight_road(1, 0.0, "", sections)));
+  const RepairedFile file = expect_links_added(open_drive(straight_road(1, 0.0, "", sections)));
   EXPECT_EQ(file.repairs.size(), 2u);  // one of each seam
   for (const Repair& repair : file.repairs) EXPECT_EQ(repair.rule, "link.dead-end");
   EXPECT_THAT(lane_links(file.bytes),
@@ -107,7 +107,7 @@ TEST(RepairOpenDrive, LinksNoLaneOverASectionsEndThatALinkHasAlready) {
   const LaneText goes_on{-2, 3.5, 0.0, "driving", R"(<link><predecessor id="-1"/></link>)"};
   const std::string sections =
       lane_section(0, {{-1, 3.5}}) + lane_section(30, {{-1, 3.5}, goes_on});
-  const RepairedFile file = expect_better(open_drive(straight_road(1, 0.0, "", sections)));
+  const RepairedFile file = expect_links_added(open_drive(straight_road(1, 0.0, "", sections)));
   EXPECT_THAT(lane_links(file.bytes), ElementsAre("1/0/-1 1/1/-2"));
 }
 
@@ -116,7 +116,7 @@ const char* const kToRoad2 =
 
 TEST(RepairOpenDrive, ReturnsARoadsLinkWithThoseOfItsLanes) {
   const std::string lanes = lane_section(0, {{1, 3.0}, {-1, 3.0}});
-  const RepairedFile file = expect_better(
+  const RepairedFile file = expect_links_added(
       open_drive(straight_road(1, 0.0, kToRoad2, lanes) + straight_road(2, 60.0, "", lanes)));
   ASSERT_EQ(file.repairs.size(), 1u);
   EXPECT_EQ(file.repairs[0].rule, "link.road-one-sided");
@@ -128,7 +128,7 @@ TEST(RepairOpenDrive, ReturnsARoadsLinkWithThoseOfItsLanes) {
 TEST(RepairOpenDrive, ReturnsARoadsLinkWithThoseLanesOnlyWhoseCornersMeet) {
   const std::string first = lane_section(0, {{1, 3.0}, {2, 2.0}, {-1, 3.0}});
   const std::string second = lane_section(0, {{1, 1.5}, {-1, 3.0}});
-  const RepairedFile file = expect_better(
+  const RepairedFile file = expect_links_added(
       open_drive(straight_road(1, 0.0, kToRoad2, first) + straight_road(2, 60.0, "", second)));
   EXPECT_THAT(lane_links(file.bytes), ElementsAre("1/0/-1 2/0/-1"));
 }
@@ -139,7 +139,7 @@ TEST(RepairOpenDrive, ReturnsARoadsLinkWithLanesOfRoadsThatRunTowardsEachOther) 
   first.replace(first.find("\"start\""), 7, "\"end\"");
   std::string second = straight_road(2, 120.0, "", lane_section(0, {{1, 3.0}, {-1, 2.5}}));
   second.replace(second.find("hdg=\"0\""), 7, fmt::format("hdg=\"{}\"", M_PI));
-  const RepairedFile file = expect_better(open_drive(first + second));
+  const RepairedFile file = expect_links_added(open_drive(first + second));
   ASSERT_EQ(file.repairs.size(), 1u);
   EXPECT_THAT(lane_links(file.bytes), ElementsAre("1/0/-1 2/0/1", "2/0/-1 1/0/1"));
 }

@@ -48,7 +48,7 @@ double moved_m(const Lane& before, const Lane& after) {
 }
 
 /// What holds of every repair, and the repaired file.
-RepairedFile expect_better(const std::string& bytes, const RepairOptions& options = {}) {
+RepairedFile expect_sound_repair(const std::string& bytes, const RepairOptions& options = {}) {
   constexpr double sampling_m = 2e-3;
   RepairedFile file = repair_file(bytes, "a map", options);
   const FindingCounts before = judged(bytes), after = judged(file.bytes);
@@ -229,7 +229,7 @@ TEST(RepairMap, MakesMapsWithMadeFaultsBetterAndMovesNoBorderTooFar) {
       }
       SCOPED_TRACE(maps.file + std::string(" ") + std::to_string(i));
       if (!validate_bytes(text, "a map").road_map) continue;
-      repaired += expect_better(text).repairs.empty() ? 0 : 1;
+      repaired += expect_sound_repair(text).repairs.empty() ? 0 : 1;
     }
   }
   EXPECT_GE(repaired, 30u);
@@ -254,13 +254,13 @@ TEST(RepairMap, UndoesASlipThatLeavesNoChoice) {
   for (const Mended& slip : slips) {
     Random random(7);
     const std::string faultless = data(slip.file);
-    const FindingCounts wanted = expect_better(faultless).after;
+    const FindingCounts wanted = expect_sound_repair(faultless).after;
     std::size_t mended = 0;
     for (int i = 0; i < 6; ++i) {
       SCOPED_TRACE(slip.rule + std::string(" ") + std::to_string(i));
       std::string text = faultless;
       slip.make(text, random);
-      const RepairedFile file = expect_better(text);
+      const RepairedFile file = expect_sound_repair(text);
       if (file.repairs.empty()) continue;
       EXPECT_THAT(file.repairs.front().rule, HasSubstr(slip.rule));
       EXPECT_LE(file.after, wanted);
@@ -288,15 +288,15 @@ std::string two_lanelets(const std::string& links) {
 }
 
 TEST(RepairMap, LinksEndsThatCoincideAndClosesGapsWithinTheToleranceOnly) {
-  const RepairedFile file = expect_better(two_lanelets(""));
+  const RepairedFile file = expect_sound_repair(two_lanelets(""));
   EXPECT_THAT(file.bytes, HasSubstr("<successor ref=\"2\"/>"));
   EXPECT_THAT(file.bytes, HasSubstr("<predecessor ref=\"1\"/>"));
   EXPECT_THAT(file.bytes, HasSubstr("<!-- kept -->"));
   EXPECT_THAT(file.bytes, testing::Not(HasSubstr("10.05")));
   EXPECT_TRUE(repair_file(file.bytes, "a map").repairs.empty());
   EXPECT_TRUE(
-      expect_better(two_lanelets(""), {.tolerance_m = 0.04, .validate = {}}).repairs.empty());
-  const RepairedFile linked = expect_better(two_lanelets("<predecessor ref=\"1\"/>"));
+      expect_sound_repair(two_lanelets(""), {.tolerance_m = 0.04, .validate = {}}).repairs.empty());
+  const RepairedFile linked = expect_sound_repair(two_lanelets("<predecessor ref=\"1\"/>"));
   ASSERT_EQ(linked.repairs.size(), 1u);
   EXPECT_EQ(linked.repairs[0].rule, "geometry.gap");
   EXPECT_NEAR(linked.repairs[0].moved_m, 0.05, 1e-9);
@@ -325,7 +325,7 @@ TEST(RepairMap, LinksRoadsWhoseEndsAreWithinTheTolerance) {
         EXPECT_TRUE(repair_file(bytes, "a map", options).repairs.empty()) << gap_m;
         continue;
       }
-      const RepairedFile file = expect_better(bytes, options);
+      const RepairedFile file = expect_sound_repair(bytes, options);
       const RoadMap road_map = parse_map(file.bytes, "a map");
       std::size_t links = 0;
       for (const Lane& lane : road_map.lanes()) {
@@ -360,7 +360,7 @@ TEST(RepairMapReal, MakesRealMapsNoWorse) {
     const std::string bytes = read_file(entry.path());
     if (!format_of(bytes) || !validate_bytes(bytes, "a map").road_map) continue;
     SCOPED_TRACE(entry.path().filename());
-    repairs += expect_better(bytes).repairs.size();
+    repairs += expect_sound_repair(bytes).repairs.size();
     ++maps;
   }
   std::cout << repairs << " repairs of " << maps << " real maps\n";

@@ -189,7 +189,7 @@ TEST(SumoNet, IdsAreTheirOwnAndOfLettersThatSumoTakes) {
 //             │ c
 //     a ──────┼────── b       inner: ab and cd, which cross
 //             │ d
-class Crossing {
+class FourArms {
  public:
   RoadMap map(bool one_way) {
     add({{-60, 0}, {-10, 0}, {10, 0}, {60, 0}}, one_way);
@@ -235,7 +235,7 @@ TEST(SumoNet, ALaneOfTenCentimetresIsPassed) {
 }
 
 TEST(SumoNet, LanesThatCrossAreInsideOneJunction) {
-  const Made made(Crossing().map(true));
+  const Made made(FourArms().map(true));
   const auto inner = find_inner_lanes(made.road_map, made.ways, made.conflicts);
   EXPECT_EQ(
       std::count_if(inner.begin(), inner.end(), [](const auto& one) { return one.has_value(); }),
@@ -251,7 +251,7 @@ TEST(SumoNet, LanesThatCrossAreInsideOneJunction) {
 }
 
 TEST(SumoNet, LanesThatAreOpenBothWaysAreEdgesBothWays) {
-  const Made one(Crossing().map(true)), both(Crossing().map(false));
+  const Made one(FourArms().map(true)), both(FourArms().map(false));
   EXPECT_EQ(both.net.edges.size(), one.net.edges.size() + 2);
   EXPECT_EQ(both.net.connections.size(), one.net.connections.size() + 1);
   for (const NetEdge& edge : both.net.edges) {

@@ -26,9 +26,9 @@ using Place = tests::MadeLanelet2::Point;
 //               ▲
 //     ◀── west ─┼───────
 //     ─── east ─┴──────▶
-class Crossing {
+class TurnAcross {
  public:
-  explicit Crossing(bool left_hand, bool has_rim = false) : left_hand_(left_hand) {
+  explicit TurnAcross(bool left_hand, bool has_rim = false) : left_hand_(left_hand) {
     const auto middle = nodes({{-60, 0}, {-12, 0}, {12, 0}, {60, 0}});
     const auto south = nodes({{-60, -4}, {-12, -4}, {12, -4}, {60, -4}});
     const auto north = nodes({{60, 4}, {12, 4}, {-12, 4}, {-60, 4}});
@@ -99,14 +99,14 @@ std::vector<std::string> found_in(const RoadMap& road_map) {
 }
 
 TEST(SumoRightOfWay, WhoTurnsAcrossWaitsAndStraightTrafficBesideEachOtherDoesNot) {
-  EXPECT_EQ(found_in(Crossing(false).map()), std::vector<std::string>{"W->W over E->N"});
-  EXPECT_EQ(found_in(Crossing(true).map()), std::vector<std::string>{"W->W over E->S"});
+  EXPECT_EQ(found_in(TurnAcross(false).map()), std::vector<std::string>{"W->W over E->N"});
+  EXPECT_EQ(found_in(TurnAcross(true).map()), std::vector<std::string>{"W->W over E->S"});
 }
 
 // The turn's edge is its first metre, which still leads straight on.
 TEST(SumoRightOfWay, ATurnFromTheRimOfTheMapIsOne) {
-  EXPECT_EQ(found_in(Crossing(false, true).map()), std::vector<std::string>{"W->W over N->N"});
-  EXPECT_EQ(found_in(Crossing(true, true).map()), std::vector<std::string>{"W->W over S->S"});
+  EXPECT_EQ(found_in(TurnAcross(false, true).map()), std::vector<std::string>{"W->W over N->N"});
+  EXPECT_EQ(found_in(TurnAcross(true, true).map()), std::vector<std::string>{"W->W over S->S"});
 }
 
 }  // namespace

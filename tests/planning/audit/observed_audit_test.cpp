@@ -24,12 +24,12 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr double kSide_m = 0.5;
+constexpr double kResolution_m = 0.5;
 
 OccupancyMap hits(const std::vector<Eigen::Vector3d>& points) {
   map::PointCloud cloud;
   for (const Eigen::Vector3d& point : points) cloud.points.push_back(point.cast<float>());
-  return OccupancyMap::build(std::vector{cloud}, {.resolution_m = kSide_m});
+  return OccupancyMap::build(std::vector{cloud}, {.resolution_m = kResolution_m});
 }
 
 Trajectory straight(double from_m, double to_m) {
@@ -127,7 +127,7 @@ struct Certified {
 
   std::vector<std::string> faults() const { return faults_of(certificate); }
   std::vector<std::string> faults_of(const AuditCertificate& claims) const {
-    return check_certificate(claims, occupancy.cells(), kSide_m, drive);
+    return check_certificate(claims, occupancy.cells(), kResolution_m, drive);
   }
 };
 
@@ -213,8 +213,8 @@ TEST(ObservedAudit, ACertificateIsRefutedIfItsMeasuredShareIsAnother) {
 TEST(ObservedAudit, AsksForAShareOfTheBodysOwnSpaceWhereToldTo) {
   // Hits below the left half of the body's way measure their columns; all else is unmeasured.
   std::vector<Eigen::Vector3d> points;
-  for (double x_m = -9.75; x_m < 50.0; x_m += kSide_m) {
-    for (double y_m = 0.25; y_m < 3.0; y_m += kSide_m) points.emplace_back(x_m, y_m, 0.8);
+  for (double x_m = -9.75; x_m < 50.0; x_m += kResolution_m) {
+    for (double y_m = 0.25; y_m < 3.0; y_m += kResolution_m) points.emplace_back(x_m, y_m, 0.8);
   }
   const OccupancyMap occupancy = hits(points);
   AuditOptions options = free_space();
@@ -234,7 +234,7 @@ TEST(ObservedAudit, SaysHowDeepAndWideAConflictIs) {
   // A wall across the way, from x 20.0 to 20.5 m, and y -0.5 to 3 m. At the end the front is 2 m
   // past it; the cells beside the body's middle line are out of it at the side, by half its width.
   std::vector<Eigen::Vector3d> points;
-  for (double y_m = -0.25; y_m < 3.0; y_m += kSide_m) points.emplace_back(20.2, y_m, 0.8);
+  for (double y_m = -0.25; y_m < 3.0; y_m += kResolution_m) points.emplace_back(20.2, y_m, 0.8);
   const VehicleShape shape;
   const double front_m = shape.length_m - shape.rear_overhang_m;
   const Trajectory drive = straight(10.0, 22.0 - front_m);

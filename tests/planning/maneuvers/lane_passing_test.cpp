@@ -12,6 +12,7 @@
 
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/route/router.h"
+#include "roadbed/tests/planning/maneuvers/made_scenario.h"
 #include "roadbed/tests/support/made_road.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tools/cli/place.h"
@@ -24,7 +25,7 @@ constexpr double kStart_m = 20.0, kGoal_m = 500.0, kGap_m = 35.0, kLead_m = 4.5;
 
 enum class NextLane { free, none, taken, free_after_5_s, free_on_the_right };
 
-struct Scene {
+struct PassingScene {
   double lead_mps, desired_mps;
   NextLane next_lane = NextLane::free;
   bool in_bend = false;
@@ -43,7 +44,7 @@ std::string lane(int id, bool may_cross, const char* change = "both") {
 }
 
 /// One way, two lanes eastwards or one; in a bend of 200 m radius to the left.
-std::filesystem::path map_of(const Scene& scene) {
+std::filesystem::path map_of(const PassingScene& scene) {
   const bool has_two = scene.next_lane != NextLane::none;
   tests::MadeRoad road;
   road.id = "1";
@@ -60,10 +61,6 @@ std::filesystem::path map_of(const Scene& scene) {
       fmt::format("passing_{}{}{}{}", has_two, scene.in_bend, scene.may_cross, scene.change), road);
 }
 
-ScenarioPlace place(const char* lane, double s_m) {
-  return {.text = fmt::format("lane:1/0/{}@{}", lane, s_m), .pointer = "/test"};
-}
-
 ScenarioObstacle car(const std::string& id, const char* lane, double s_m,
                      std::vector<TimedSpeed> speeds) {
   if (speeds.front().speed_mps == 0.0 && speeds.size() == 1) {
@@ -72,7 +69,7 @@ ScenarioObstacle car(const std::string& id, const char* lane, double s_m,
   return {.id = id, .motion = TrafficObstacle{place(lane, s_m), {}, std::move(speeds)}};
 }
 
-struct Driven {
+struct PassingDrive {
   Drive drive;
   bool passed = false;             ///< the lead, by the end
   double others_brake_mps2 = 0.0;  ///< at most, of the last obstacle
@@ -80,10 +77,10 @@ struct Driven {
   double clearance_m = 1e9;
 };
 
-Driven drive_in(const Scene& scene) {
+PassingDrive drive_past(const PassingScene& scene) {
   const bool is_leftmost =
       scene.next_lane == NextLane::none || scene.next_lane == NextLane::free_on_the_right;
-  const char* own = is_leftmost ? "-1" : "-2";
+  const char* own = is_leftmost ? "0/-1" : "0/-2";
   Scenario scenario;
   scenario.file = "passing.json";
   scenario.map_file = map_of(scene);
@@ -95,20 +92,20 @@ Driven drive_in(const Scene& scene) {
   const double lead_s_m = kStart_m + kGap_m, lead_mps = scene.lead_mps;
   scenario.obstacles = {car("lead", own, lead_s_m, {{0.0, lead_mps}})};
   if (scene.next_lane == NextLane::taken) {
-    scenario.obstacles.push_back(car("beside", "-1", lead_s_m, {{0.0, lead_mps}}));
+    scenario.obstacles.push_back(car("beside", "0/-1", lead_s_m, {{0.0, lead_mps}}));
   }
   if (scene.next_lane == NextLane::free_after_5_s) {
     scenario.obstacles.push_back(
-        car("beside", "-1", lead_s_m, {{0.0, lead_mps}, {5.0, lead_mps}, {12.0, 30.0}}));
+        car("beside", "0/-1", lead_s_m, {{0.0, lead_mps}, {5.0, lead_mps}, {12.0, 30.0}}));
   }
   if (scene.fast_from_m) {
-    scenario.obstacles.push_back(car("fast", "-1", *scene.fast_from_m, {{0.0, 20.0}}));
+    scenario.obstacles.push_back(car("fast", "0/-1", *scene.fast_from_m, {{0.0, 20.0}}));
   }
   if (scene.queue_at_m) {
     scenario.obstacles.push_back(car("queue", own, *scene.queue_at_m, {{0.0, 0.0}}));
   }
   if (scene.parked_at_m) {
-    scenario.obstacles.push_back(car("parked", "-1", *scene.parked_at_m, {{0.0, 0.0}}));
+    scenario.obstacles.push_back(car("parked", "0/-1", *scene.parked_at_m, {{0.0, 0.0}}));
   }
   if (scene.speeds_up_at_s) {
     const double at_s = *scene.speeds_up_at_s;
@@ -117,7 +114,7 @@ Driven drive_in(const Scene& scene) {
             {{0.0, lead_mps}, {at_s, lead_mps}, {at_s + 4.0, scene.desired_mps}});
   }
   World world = make_world(scenario);
-  Driven driven{.drive = drive(scenario, world, {.predicts = !scene.queue_at_m})};
+  PassingDrive driven{.drive = drive(scenario, world, {.predicts = !scene.queue_at_m})};
   const geometry::TrajectoryPoint last = driven.drive.trajectory.points().back();
   const auto station = [&](const Eigen::Vector2d& in_map) {
     return world.line.project(in_map).s_m;
@@ -140,18 +137,18 @@ Driven drive_in(const Scene& scene) {
 
 /// Time that passing saves up to the goal, and whether there is room for it: closing up, coming
 /// past with 20 m to spare, and 8 s for two changes of lanes.
-double saved_s(const Scene& scene) {
+double saved_s(const PassingScene& scene) {
   const double way_m = kGoal_m - kStart_m;
   return (way_m - kGap_m) / std::max(0.1, scene.lead_mps) - way_m / scene.desired_mps;
 }
-bool has_room(const Scene& scene) {
+bool has_room(const PassingScene& scene) {
   const double faster_mps = scene.desired_mps - scene.lead_mps;
   if (faster_mps <= 0.5) return false;
   const double passes_s = (kGap_m + kLead_m + 20.0) / faster_mps + 8.0;
   return passes_s * scene.desired_mps < kGoal_m - kStart_m;
 }
 
-std::string words(const Scene& scene) {
+std::string words(const PassingScene& scene) {
   return fmt::format("lead {} m/s, desired {} m/s, next lane {}{}", scene.lead_mps,
                      scene.desired_mps, static_cast<int>(scene.next_lane),
                      scene.in_bend ? ", bend" : "");
@@ -167,9 +164,9 @@ TEST(LanePassing, PassesWhereFiveSecondsAreGainedAndFollowsElsewhere) {
         for (const bool in_bend : {false, true}) {
           if (in_bend && desired_mps != 12.0) continue;
           if (is_short && (in_bend || desired_mps != 12.0)) continue;
-          const Scene scene{lead_mps, desired_mps, next_lane, in_bend};
+          const PassingScene scene{lead_mps, desired_mps, next_lane, in_bend};
           SCOPED_TRACE(words(scene));
-          const Driven driven = drive_in(scene);
+          const PassingDrive driven = drive_past(scene);
           EXPECT_NE(driven.drive.verdict.outcome, Outcome::collision) << driven.drive.verdict.text;
           const bool is_open = next_lane == NextLane::free ||
                                (next_lane == NextLane::free_after_5_s && lead_mps > 0.0);
@@ -194,9 +191,9 @@ TEST(LanePassing, PassesWhereFiveSecondsAreGainedAndFollowsElsewhere) {
 }
 
 TEST(LanePassing, SaysWhoIsInTheWay) {
-  const auto reasons = [](const Scene& scene) {
+  const auto reasons = [](const PassingScene& scene) {
     std::string all;
-    for (const DriveCycle& cycle : drive_in(scene).drive.cycles) all += cycle.reason + "\n";
+    for (const DriveCycle& cycle : drive_past(scene).drive.cycles) all += cycle.reason + "\n";
     return all;
   };
   EXPECT_NE(reasons({4.0, 12.0}).find("passes lead"), std::string::npos);
@@ -205,7 +202,7 @@ TEST(LanePassing, SaysWhoIsInTheWay) {
   EXPECT_NE(reasons({4.0, 12.0, NextLane::free, false, false})
                 .find("lead is not passed: the marking may not be crossed here"),
             std::string::npos);
-  Scene one_way{4.0, 12.0};
+  PassingScene one_way{4.0, 12.0};
   for (const char* change : {"increase", "decrease"}) {
     one_way.change = change;
     const std::string why = reasons(one_way);
@@ -220,9 +217,9 @@ TEST(LanePassing, SaysWhoIsInTheWay) {
 
 TEST(LanePassing, AQueueIsPassedAsAWholeOrNotAtAll) {
   const auto passes = [](double lead_mps, double queue_at_m) {
-    Scene scene{lead_mps, 12.0};
+    PassingScene scene{lead_mps, 12.0};
     scene.queue_at_m = queue_at_m;
-    const Driven driven = drive_in(scene);
+    const PassingDrive driven = drive_past(scene);
     return std::ranges::any_of(driven.drive.cycles, [](const DriveCycle& cycle) {
       return cycle.t_s < 5.0 && cycle.reason.find("passes lead") != std::string::npos;
     });
@@ -236,9 +233,9 @@ TEST(LanePassing, NobodyBehindHasToBrakeHard) {
   int waits = 0;
   for (const double from_m : {0.0, 5.0, 10.0, 22.0}) {
     SCOPED_TRACE(from_m);
-    Scene scene{4.0, 12.0};
+    PassingScene scene{4.0, 12.0};
     scene.fast_from_m = from_m;
-    const Driven driven = drive_in(scene);
+    const PassingDrive driven = drive_past(scene);
     EXPECT_TRUE(driven.passed);
     EXPECT_LT(driven.others_brake_mps2, 2.3);
     waits += std::ranges::any_of(driven.drive.cycles,
@@ -254,9 +251,9 @@ TEST(LanePassing, NobodyBehindHasToBrakeHard) {
 TEST(LanePassing, FallsBackBehindALeadThatSpeedsUpMeanwhile) {
   for (const double at_s : {1.0, 2.0, 3.0, 4.0}) {
     SCOPED_TRACE(at_s);
-    Scene scene{4.0, 12.0};
+    PassingScene scene{4.0, 12.0};
     scene.speeds_up_at_s = at_s;
-    const Driven driven = drive_in(scene);
+    const PassingDrive driven = drive_past(scene);
     EXPECT_EQ(driven.drive.verdict.outcome, Outcome::goal_reached) << driven.drive.verdict.text;
     EXPECT_LT(driven.beside_m, 0.5);
     EXPECT_GT(driven.clearance_m, 1.2);
@@ -266,16 +263,16 @@ TEST(LanePassing, FallsBackBehindALeadThatSpeedsUpMeanwhile) {
 TEST(LanePassing, CarsParkedInTheNextLaneAreInTheWay) {
   for (const double at_m : {60.0, 75.0, 90.0, 110.0}) {
     SCOPED_TRACE(at_m);
-    Scene scene{4.0, 12.0};
+    PassingScene scene{4.0, 12.0};
     scene.parked_at_m = at_m;
-    const Driven driven = drive_in(scene);
+    const PassingDrive driven = drive_past(scene);
     EXPECT_EQ(driven.drive.verdict.outcome, Outcome::goal_reached) << driven.drive.verdict.text;
     EXPECT_GT(driven.clearance_m, 1.2);
   }
 }
 
 TEST(LanePassing, IsSmooth) {
-  const Drive drive = drive_in({4.0, 12.0}).drive;
+  const Drive drive = drive_past({4.0, 12.0}).drive;
   EXPECT_EQ(drive.verdict.outcome, Outcome::goal_reached);
   double hardest_mps2 = 0.0, clearance_m = 1e9;
   for (const auto& row : drive.trajectory.points()) {

@@ -9,13 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/tests/planning/maneuvers/made_scenario.h"
 #include "roadbed/tests/support/made_road.h"
 #include "roadbed/tools/simulation/drive.h"
 
 namespace roadbed::tools {
 namespace {
 
-constexpr double kLaneEnds_m = 300.0, kOwnLane_m = -1.75, kOtherLane_m = -5.25, kCar_m = 4.5;
+constexpr double kLaneEnds_m = 300.0, kOwnLane_m = -1.75, kOtherLane_m = -5.25;
 
 /// Two lanes eastwards, of which the right one ends at x = 300; the marking between may be crossed,
 /// or not. The vehicle drives in the left one.
@@ -36,8 +37,8 @@ Scenario scenario_of(double start_m, double speed_mps, const std::string& crosse
   Scenario scenario;
   scenario.file = "letting_in.json";
   scenario.map_file = tests::made_file("letting_in_" + crossed, road);
-  scenario.start = {.text = fmt::format("lane:1/0/-1@{}", start_m), .pointer = "/start"};
-  scenario.goal = {.text = "lane:1/1/-1@500", .pointer = "/goal"};
+  scenario.start = place("0/-1", start_m);
+  scenario.goal = place("1/-1", 500.0);
   scenario.start_speed_mps = speed_mps;
   scenario.options.desired_speed_mps = speed_mps;
   scenario.duration_s = 60.0;
@@ -117,12 +118,12 @@ TEST(LettingIn, HasTheRoomBeforeTheOtherComes) {
     scenario.goal.text = "lane:1/1/-1@250";
     scenario.duration_s = 150.0;
     const double other_m = kLaneEnds_m - 50.0 - 0.5 * kCar_m - 4.0 * other_mps;
-    scenario.obstacles = {{.id = "other",
-                           .length_m = kCar_m,
-                           .motion = TrafficObstacle{
-                               {.text = fmt::format("lane:1/0/-2@{}", other_m), .pointer = "/test"},
-                               ScenarioPlace{.text = "lane:1/1/-1@600", .pointer = "/test"},
-                               {{0.0, other_mps}}}}};
+    scenario.obstacles = {
+        {.id = "other",
+         .length_m = kCar_m,
+         .motion = TrafficObstacle{place("0/-2", other_m),
+                                   ScenarioPlace{.text = "lane:1/1/-1@600", .pointer = "/test"},
+                                   {{0.0, other_mps}}}}};
     World world = make_world(scenario);
     const Drive driven = drive(scenario, world);
     EXPECT_EQ(driven.verdict.outcome, Outcome::goal_reached) << driven.verdict.text;

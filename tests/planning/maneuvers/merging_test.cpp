@@ -9,20 +9,20 @@
 #include <cstdlib>
 #include <optional>
 
+#include "roadbed/tests/planning/maneuvers/made_scenario.h"
 #include "roadbed/tests/support/made_road.h"
 #include "roadbed/tools/simulation/drive.h"
 
 namespace roadbed::tools {
 namespace {
 
-constexpr double kStart_m = 220.0, kLaneEnds_m = 500.0,
-                 kGoal_m = 350.0;  // of the goal: beyond that
-constexpr double kCar_m = 4.5;
+constexpr double kMergingStart_m = 220.0, kOwnLaneEnds_m = 500.0,
+                 kMergingGoal_m = 350.0;  // of the goal: beyond that
 /// Where the middle of a change may be: its ends keep to where both lanes are.
 constexpr double kFirstChange_m = 250.0, kLastChange_m = 470.0;
 
 /// The ego's lane ends after 300 m; cars drive in the next one at one speed, at one gap.
-struct Scene {
+struct MergingScene {
   double own_mps = 15.0, others_mps = 15.0;
   double gap_m = 0.0;      ///< bumper to bumper; 0: the road is free
   double first_m = 370.0;  ///< station of the first one
@@ -42,25 +42,21 @@ std::filesystem::path map_file() {
   road.length_m = 1500.0;
   road.type = R"(<type s="0" type="rural"><speed max="30" unit="m/s"/></type>)";
   road.lanes = tests::made_section(0.0, "", lane(-1, -1) + lane(-2, 0)) +
-               tests::made_section(kLaneEnds_m, "",
+               tests::made_section(kOwnLaneEnds_m, "",
                                    tests::made_lane(-1, R"(<link><predecessor id="-1"/></link>)"));
   return tests::made_file("merging", road);
 }
 
-ScenarioPlace place(const char* lane, double s_m) {
-  return {.text = fmt::format("lane:1/{}@{}", lane, s_m), .pointer = "/test"};
-}
-
 ScenarioPlace place_in_next_lane(double x_m) {
-  return x_m < kLaneEnds_m ? place("0/-1", x_m) : place("1/-1", x_m - kLaneEnds_m);
+  return x_m < kOwnLaneEnds_m ? place("0/-1", x_m) : place("1/-1", x_m - kOwnLaneEnds_m);
 }
 
-Scenario scenario_of(const Scene& scene) {
+Scenario scenario_of(const MergingScene& scene) {
   Scenario scenario;
   scenario.file = "merging.json";
   scenario.map_file = map_file();
-  scenario.start = place("0/-2", kStart_m);
-  scenario.goal = place("1/-1", kGoal_m);
+  scenario.start = place("0/-2", kMergingStart_m);
+  scenario.goal = place("1/-1", kMergingGoal_m);
   scenario.start_speed_mps = scene.own_mps;
   scenario.duration_s = 60.0;
   scenario.options.desired_speed_mps = std::max(8.0, scene.own_mps);
@@ -76,15 +72,15 @@ Scenario scenario_of(const Scene& scene) {
   return scenario;
 }
 
-struct Driven {
+struct MergingDrive {
   Drive drive;
   std::optional<std::size_t> ahead = {}, behind = {};  ///< in whose gap it has merged
   double others_brake_mps2 = 0.0, own_brake_mps2 = 0.0, clearance_m = 1e9, merged_at_s = 0.0;
   double least_mps = 1e9, merged_at_m = 0.0;
 };
 
-Driven drive_in(const Scenario& scenario, World& world) {
-  Driven driven{.drive = drive(scenario, world)};
+MergingDrive drive_in(const Scenario& scenario, World& world) {
+  MergingDrive driven{.drive = drive(scenario, world)};
   for (const DriveSample& sample : driven.drive.samples) {
     driven.clearance_m = std::min(driven.clearance_m, sample.clearance_m);
   }
@@ -113,7 +109,7 @@ Driven drive_in(const Scenario& scenario, World& world) {
   return driven;
 }
 
-Driven drive_in(const Scene& scene) {
+MergingDrive drive_in(const MergingScene& scene) {
   const Scenario scenario = scenario_of(scene);
   World world = make_world(scenario);
   return drive_in(scenario, world);
@@ -137,7 +133,7 @@ double hardest_braking_mps2(double gap_m, double speed_mps, double intruder_mps)
 
 /// Whether a place in the next lane has much room to both sides: 2 m and 0.8 s behind who is ahead,
 /// and the one behind brakes by 1.5 m/s² at most.
-bool has_room(const Scene& scene, double t_s, double front_m, double speed_mps) {
+bool has_room(const MergingScene& scene, double t_s, double front_m, double speed_mps) {
   const double spacing_m = scene.gap_m + kCar_m;
   const double first_at_m = scene.first_m + scene.others_mps * t_s;
   const double number = std::ceil((first_at_m - front_m) / spacing_m) - 1.0;  // who is ahead
@@ -151,11 +147,11 @@ bool has_room(const Scene& scene, double t_s, double front_m, double speed_mps) 
 
 /// Whether some drive with two accelerations comes to a place with much room, where lanes may be
 /// changed.
-bool has_easy_gap(const Scene& scene) {
+bool has_easy_gap(const MergingScene& scene) {
   const double most_mps = std::max(8.0, scene.own_mps);
   for (double first_mps2 = -1.2; first_mps2 < 0.75; first_mps2 += 0.1) {
     for (double until_s = 0.0; until_s < 8.0; until_s += 0.5) {
-      double s_m = kStart_m + 3.68, speed_mps = scene.own_mps;
+      double s_m = kMergingStart_m + 3.68, speed_mps = scene.own_mps;
       for (double t_s = 0.0; s_m < kLastChange_m && t_s < 60.0; t_s += 0.05) {
         const double wanted_mps = std::min(most_mps, scene.others_mps);
         const double back_mps2 = std::clamp((wanted_mps - speed_mps) / 0.5, -1.0, 0.7);
@@ -176,12 +172,12 @@ TEST(Merging, TakesGapsThatAreEasyWithoutAStop) {
     for (const double faster_mps : {-5.0, 0.0, 5.0}) {
       for (const double gap_m : {4.0, 20.0, 30.0, 40.0, 60.0}) {
         if (gap_m < 10.0 && others_mps > 5.0) continue;  // nobody drives like that
-        const Scene scene{others_mps + faster_mps, others_mps, gap_m};
+        const MergingScene scene{others_mps + faster_mps, others_mps, gap_m};
         if (scene.own_mps < 3.0 || scene.own_mps > 25.0) continue;
         if (is_short && (others_mps != 15.0 || faster_mps != 0.0)) continue;
         SCOPED_TRACE(
             fmt::format("own {} m/s, others {} m/s, gap {} m", scene.own_mps, others_mps, gap_m));
-        const Driven driven = drive_in(scene);
+        const MergingDrive driven = drive_in(scene);
         EXPECT_NE(driven.drive.verdict.outcome, Outcome::collision) << driven.drive.verdict.text;
         EXPECT_GT(driven.clearance_m, 0.29);
         EXPECT_LT(driven.others_brake_mps2, 2.5);
@@ -202,7 +198,7 @@ TEST(Merging, TakesGapsThatAreEasyWithoutAStop) {
 TEST(Merging, IsWhereTheGapIs) {
   double last_m = 0.0;
   for (const int without : {7, 10, 13}) {
-    const Driven driven =
+    const MergingDrive driven =
         drive_in({.own_mps = 10.0, .others_mps = 12.0, .gap_m = 17.0, .without = without});
     SCOPED_TRACE(fmt::format("without car {}, merged at {} m", without, driven.merged_at_m));
     EXPECT_EQ(driven.ahead, without - 1);  // indices up to there are those of the names
@@ -216,7 +212,7 @@ TEST(Merging, IsWhereTheGapIs) {
 
 TEST(Merging, NobodyInTheNextLaneIsNoReasonToSlowDown) {
   for (const double own_mps : {5.0, 15.0, 25.0}) {
-    const Driven driven = drive_in({own_mps, 0.0, 0.0});
+    const MergingDrive driven = drive_in({own_mps, 0.0, 0.0});
     EXPECT_GT(driven.merged_at_s, 0.0);
     EXPECT_GT(driven.least_mps, own_mps - 0.1);
   }
@@ -224,7 +220,7 @@ TEST(Merging, NobodyInTheNextLaneIsNoReasonToSlowDown) {
 
 // Far ahead when it is merged behind, and much slower: closed up to as to anybody.
 TEST(Merging, WhoIsMergedBehindIsKeptFromWhenClosedUpTo) {
-  const Driven driven =
+  const MergingDrive driven =
       drive_in({.own_mps = 16.0, .others_mps = 7.5, .gap_m = 500.0, .first_m = 480.0, .cars = 1});
   EXPECT_EQ(driven.drive.verdict.outcome, Outcome::goal_reached) << driven.drive.verdict.text;
   EXPECT_GT(driven.clearance_m, 12.0);
@@ -248,7 +244,7 @@ TEST(Merging, ThereIsAnAnswerAtAnySpeedAndAtAnyDistance) {
 }
 
 TEST(Merging, SaysWhoIsInTheWayAndHowManyMetresAreMissing) {
-  const Driven driven = drive_in({15.0, 15.0, 10.0});
+  const MergingDrive driven = drive_in({15.0, 15.0, 10.0});
   const auto says = [&](const std::string& part) {
     return std::ranges::any_of(driven.drive.cycles, [&](const DriveCycle& cycle) {
       return cycle.reason.find(part) != std::string::npos;
@@ -257,7 +253,7 @@ TEST(Merging, SaysWhoIsInTheWayAndHowManyMetresAreMissing) {
   EXPECT_TRUE(says("no gap to merge into: "));
   EXPECT_TRUE(says(" m are missing behind car "));
   EXPECT_TRUE(says("and before car "));
-  const Driven easy = drive_in({20.0, 15.0, 60.0});
+  const MergingDrive easy = drive_in({20.0, 15.0, 60.0});
   EXPECT_TRUE(std::ranges::any_of(easy.drive.cycles, [](const DriveCycle& cycle) {
     return cycle.reason.find("merges behind car ") == 0;
   }));
@@ -274,7 +270,7 @@ TEST(Merging, RoomBehindIsWhatAFollowerStopsClosingInBy2MetresPerSecondSquared) 
 }
 
 /// Vehicles that pass the ego's front beyond a station, until it has merged.
-int passed_beyond(double from_m, const Driven& driven, const World& world) {
+int passed_beyond(double from_m, const MergingDrive& driven, const World& world) {
   int count = 0;
   for (const planning::Obstacle& other : world.obstacles) {
     const auto ahead_m = [&](double t_s) {
@@ -291,16 +287,16 @@ int passed_beyond(double from_m, const Driven& driven, const World& world) {
 TEST(Merging, InADenseQueueOneIsLetInAtTheEndOfTheLane) {
   for (const double others_mps : {2.0, 4.0, 6.0, 8.0}) {
     for (const double headway_s : {1.3, 2.0, 3.0}) {
-      const Scene scene{.own_mps = others_mps,
-                        .others_mps = others_mps,
-                        .gap_m = std::max(3.0, others_mps * headway_s - kCar_m),
-                        .first_m = 560.0,
-                        .cars = 60};
+      const MergingScene scene{.own_mps = others_mps,
+                               .others_mps = others_mps,
+                               .gap_m = std::max(3.0, others_mps * headway_s - kCar_m),
+                               .first_m = 560.0,
+                               .cars = 60};
       SCOPED_TRACE(fmt::format("others {} m/s, gap {} m", others_mps, scene.gap_m));
       Scenario scenario = scenario_of(scene);
       scenario.duration_s = 80.0;
       World world = make_world(scenario);
-      const Driven driven = drive_in(scenario, world);
+      const MergingDrive driven = drive_in(scenario, world);
       EXPECT_NE(driven.drive.verdict.outcome, Outcome::collision) << driven.drive.verdict.text;
       EXPECT_GT(driven.clearance_m, 0.29);
       EXPECT_LT(driven.others_brake_mps2, 2.5);
@@ -324,14 +320,14 @@ TEST(Merging, LinesChangeAtBothEndsOfWhatTheMapLeaves) {
   EXPECT_NEAR(y_m(lines->own_lane, 485.0), -3.5, 0.1);
   EXPECT_NEAR(y_m(lines->own_lane, 500.0), -1.75, 0.05);
   const double long_m = 3.5 * 15.0;
-  EXPECT_NEAR(y_m(lines->next_lane, kStart_m), -5.25, 0.05);
-  EXPECT_NEAR(y_m(lines->next_lane, kStart_m + 0.5 * long_m), -3.5, 0.1);
-  EXPECT_NEAR(y_m(lines->next_lane, kStart_m + long_m), -1.75, 0.05);
+  EXPECT_NEAR(y_m(lines->next_lane, kMergingStart_m), -5.25, 0.05);
+  EXPECT_NEAR(y_m(lines->next_lane, kMergingStart_m + 0.5 * long_m), -3.5, 0.1);
+  EXPECT_NEAR(y_m(lines->next_lane, kMergingStart_m + long_m), -1.75, 0.05);
   EXPECT_NEAR(places[0].lane.at(lines->hold_m).x(), 485.0 - 0.115 * 30.0, 1.5);
 }
 
 TEST(Merging, PlaceIsWhereTheBodyComesIntoTheWay) {
-  Scene scene{15.0, 15.0, 0.0};
+  MergingScene scene{15.0, 15.0, 0.0};
   const World world = make_world(scenario_of(scene));
   const auto places = planning::merge_places(world.road_map, world.route, world.line);
   ASSERT_EQ(places.size(), 1U);

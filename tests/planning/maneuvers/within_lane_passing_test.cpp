@@ -17,14 +17,14 @@ namespace {
 
 constexpr double kCyclist_mps = 4.0, kCyclistWidth_m = 0.6;
 
-struct Passed {
+struct PassedCyclist {
   bool is_passed = false;
   double beside_m = 1e9;  ///< least distance of the sides while the bodies are beside one another
   std::string reason;     ///< of a cycle behind it
 };
 
 /// On a one-way road, with a cyclist 0.5 m from its right edge.
-Passed drive_behind_cyclist(double road_width_m, const std::string& kind = "bicycle") {
+PassedCyclist drive_behind_cyclist(double road_width_m, const std::string& kind = "bicycle") {
   const double d_m = 0.5 - 0.5 * road_width_m;
   planning::Obstacle other{
       .id = "rider", .kind = kind, .length_m = 1.8, .width_m = kCyclistWidth_m, .motion = {}};
@@ -37,7 +37,7 @@ Passed drive_behind_cyclist(double road_width_m, const std::string& kind = "bicy
   World world =
       tests::straight_world({.to_x_m = 460.0, .width_m = road_width_m, .goal_x_m = 400.0}, {other});
   const Drive driven = drive(scenario, world);
-  Passed passed;
+  PassedCyclist passed;
   for (const geometry::TrajectoryPoint& row : driven.trajectory.points()) {
     const auto body = geometry::body_at(row.pose(), scenario.vehicle);
     const auto rider = rectangle_at(other, row.t_s);
@@ -57,7 +57,7 @@ Passed drive_behind_cyclist(double road_width_m, const std::string& kind = "bicy
 TEST(WithinLanePassing, CyclistsArePassedAtAMetreAndAHalfWhereTheLaneHasThatRoom) {
   for (const double width_m : {4.15, 4.5, 5.0, 6.0}) {
     SCOPED_TRACE(testing::Message() << "road of " << width_m << " m");
-    const Passed passed = drive_behind_cyclist(width_m);
+    const PassedCyclist passed = drive_behind_cyclist(width_m);
     EXPECT_TRUE(passed.is_passed) << passed.reason;
     EXPECT_GE(passed.beside_m, 1.49);
   }
@@ -66,7 +66,7 @@ TEST(WithinLanePassing, CyclistsArePassedAtAMetreAndAHalfWhereTheLaneHasThatRoom
 TEST(WithinLanePassing, CyclistsAreFollowedWhereTheLaneLacksRoomAndTheReasonSaysHowMuch) {
   for (const double width_m : {3.0, 3.5, 3.8}) {
     SCOPED_TRACE(testing::Message() << "road of " << width_m << " m");
-    const Passed passed = drive_behind_cyclist(width_m);
+    const PassedCyclist passed = drive_behind_cyclist(width_m);
     EXPECT_FALSE(passed.is_passed);
     EXPECT_EQ(passed.beside_m, 1e9);
     EXPECT_THAT(passed.reason, testing::HasSubstr(fmt::format(
@@ -75,7 +75,7 @@ TEST(WithinLanePassing, CyclistsAreFollowedWhereTheLaneLacksRoomAndTheReasonSays
 }
 
 TEST(WithinLanePassing, OthersNeedOnlyTheClearanceThatIsAskedFor) {
-  const Passed passed = drive_behind_cyclist(3.5, "scooter");
+  const PassedCyclist passed = drive_behind_cyclist(3.5, "scooter");
   EXPECT_TRUE(passed.is_passed) << passed.reason;
   EXPECT_GE(passed.beside_m, 0.29);
   EXPECT_LT(passed.beside_m, 1.0);

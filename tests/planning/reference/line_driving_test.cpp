@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kLeg_m = 40.0, kBend_m = 3.8;
+constexpr double kStraight_m = 40.0, kBend_m = 3.8;
 
 // One lane eastwards, a quarter circle to the left whose middle has a radius of 3.8 m, northwards.
 map::RoadMap sharp_bend(double half_width_m) {
@@ -27,13 +27,13 @@ map::RoadMap sharp_bend(double half_width_m) {
     left.push_back(middle + half_width_m * normal);
     right.push_back(middle - half_width_m * normal);
   };
-  for (int i = 0; i < 40; ++i) add({-kLeg_m + i * kLeg_m / 40.0, 0.0}, 0.0);
+  for (int i = 0; i < 40; ++i) add({-kStraight_m + i * kStraight_m / 40.0, 0.0}, 0.0);
   for (int i = 0; i <= 20; ++i) {
     const double turned = 0.5 * std::numbers::pi * i / 20.0;
     add({kBend_m * std::sin(turned), kBend_m - kBend_m * std::cos(turned)}, turned);
   }
   for (int i = 1; i <= 40; ++i) {
-    add({kBend_m, kBend_m + i * kLeg_m / 40.0}, 0.5 * std::numbers::pi);
+    add({kBend_m, kBend_m + i * kStraight_m / 40.0}, 0.5 * std::numbers::pi);
   }
   tests::MadeMap made;
   made.add_lane(made.add_road("1"), "-1", left, right);

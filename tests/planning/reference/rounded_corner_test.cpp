@@ -64,8 +64,8 @@ bool in_lane(const Vector2d& place, const Corner& corner, double margin_m) {
   return on_first || (std::abs(place.x()) < w_m && y_m > -w_m);
 }
 
-ReferenceLine line_on(const map::RoadMap& road_map,
-                      const std::optional<geometry::VehicleShape>& vehicle) {
+ReferenceLine line_for(const map::RoadMap& road_map,
+                       const std::optional<geometry::VehicleShape>& vehicle) {
   const map::LaneId last{road_map.lanes().size() > 1 ? 1u : 0u};
   const double end_m = road_map.lane(last).length_m() - 5.0;
   const RouteAnswer answer = find_route(road_map, {{0}, 5.0, 0.0}, {last, end_m, 0.0});
@@ -129,7 +129,7 @@ class RoundedCorner : public testing::TestWithParam<Corner> {};
 TEST_P(RoundedCorner, OfPolylinesIsSteeredWithinTheLane) {
   const geometry::VehicleShape vehicle;
   const map::RoadMap road_map = polyline_corner(GetParam());
-  const ReferenceLine plain = line_on(road_map, {}), line = line_on(road_map, vehicle);
+  const ReferenceLine plain = line_for(road_map, {}), line = line_for(road_map, vehicle);
   EXPECT_GT(measure(plain, vehicle).peak_per_m, 0.8);
   EXPECT_LT(measure(plain, vehicle).slowest_mps, 0.7);
   EXPECT_GT(body_outside_m(plain, GetParam()), 0.6);
@@ -145,7 +145,7 @@ TEST_P(RoundedCorner, OfPolylinesIsSteeredWithinTheLane) {
 
 TEST_P(RoundedCorner, HasTheCorridorOfTheLaneBesideIt) {
   const map::RoadMap road_map = polyline_corner(GetParam());
-  const ReferenceLine line = line_on(road_map, geometry::VehicleShape{});
+  const ReferenceLine line = line_for(road_map, geometry::VehicleShape{});
   for (double s_m = 0.0; s_m < line.goal_s_m(); s_m += 1.0) {
     const Vector2d at = line.at(s_m).in_map;
     const double past_corner_m = std::abs(at.y()) + at.x();  // the diagonal parts the lanes
@@ -176,7 +176,7 @@ TEST(RoundedCorners, OfAnOpenDriveRoadIsSteered) {
       length="39.4292036732051034"><line/></geometry>)";
   const map::RoadMap road_map = tests::made_map(tests::made_road(road));
   const geometry::VehicleShape vehicle;
-  const ReferenceLine plain = line_on(road_map, {}), line = line_on(road_map, vehicle);
+  const ReferenceLine plain = line_for(road_map, {}), line = line_for(road_map, vehicle);
   EXPECT_LT(measure(plain, vehicle).slowest_mps, kWalkingSpeed_mps);
   const Measured rounded = measure(line, vehicle);
   EXPECT_LT(rounded.peak_per_m, drivable_curvature_per_m(vehicle));
@@ -197,7 +197,7 @@ TEST(RoundedCorners, LeaveALineAsItIsThatCanBeDriven) {
   }
   made.add_lane(made.add_road("1"), "-1", left, right);
   const map::RoadMap road_map = made.build();
-  const ReferenceLine plain = line_on(road_map, {}), line = line_on(road_map, {{}});
+  const ReferenceLine plain = line_for(road_map, {}), line = line_for(road_map, {{}});
   ASSERT_EQ(plain.length_m(), line.length_m());
   for (double s_m = -5.0; s_m < line.length_m(); s_m += 0.1) {
     EXPECT_EQ(plain.at(s_m).in_map, line.at(s_m).in_map);
@@ -207,7 +207,7 @@ TEST(RoundedCorners, LeaveALineAsItIsThatCanBeDriven) {
 
 TEST(RoundedCorners, AreLeftAndSaidWhereThereIsNoRoomForTheBody) {
   const map::RoadMap road_map = polyline_corner({1.0});
-  const ReferenceLine line = line_on(road_map, geometry::VehicleShape{});
+  const ReferenceLine line = line_for(road_map, geometry::VehicleShape{});
   ASSERT_GE(line.notes().size(), 2u);
   EXPECT_NE(line.notes()[0].find("is not rounded: none of "), std::string::npos);
   EXPECT_NE(line.notes()[1].find("bends up to 0.8"), std::string::npos) << line.notes()[1];

@@ -115,12 +115,12 @@ void expect_connected(const RoadMap& road_map, const Route& route, const LanePla
   }
 }
 
-struct Tally {
+struct RouteTally {
   int found = 0, none = 0, with_changes = 0;
 };
 
 void compare_with_boost(const RoadMap& road_map, std::mt19937& random, int pairs,
-                        const RouteOptions& options, Tally& tally) {
+                        const RouteOptions& options, RouteTally& tally) {
   const RouteOracle oracle(road_map, options);
   Router router(road_map, options);
   for (int i = 0; i < pairs; ++i) {
@@ -148,7 +148,7 @@ void compare_with_boost(const RoadMap& road_map, std::mt19937& random, int pairs
 
 TEST(FindRoute, CostsWhatDijkstraOfAnotherLibraryFindsOnRandomGrids) {
   std::mt19937 random(20261121);
-  Tally tally;
+  RouteTally tally;
   for (int trial = 0; trial < 12; ++trial) {
     const RoadMap road_map = random_grid(random, 3 + trial % 3, 2 + trial % 2);
     RouteOptions options;
@@ -167,7 +167,7 @@ TEST(FindRoute, CostsWhatDijkstraOfAnotherLibraryFindsOnRandomGrids) {
 TEST(FindRoute, CostsWhatDijkstraOfAnotherLibraryFindsOnRealMaps) {
   ROADBED_REAL_DATA_OR_SKIP(folder);
   std::mt19937 random(20261121);
-  Tally tally;
+  RouteTally tally;
   for (const char* file :
        {"BerkeleyLearnVerify+Scenic/Town10HD.xodr", "esmini+esmini/multi_intersections.xodr",
         "esmini+esmini/highway_example_with_merge_and_split.xodr"}) {
@@ -265,7 +265,7 @@ void expect_past(const RoadMap& road_map, const std::vector<BlockedStretch>& blo
 TEST(FindRoute, LeadsPastWhatIsBlockedWhereverTryingMetreByMetreDoes) {
   std::mt19937 random(20261123);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
-  Tally tally;
+  RouteTally tally;
   int detours = 0;
   for (int trial = 0; trial < 12; ++trial) {
     const RoadMap road_map = random_grid(random, 3, 2);

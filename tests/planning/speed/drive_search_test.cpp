@@ -10,7 +10,7 @@
 namespace roadbed::planning {
 namespace {
 
-constexpr double kStep_s = 0.1, kHalfRoad_m = 3.5;
+constexpr double kSearchStep_s = 0.1, kHalfRoad_m = 3.5;
 const geometry::VehicleShape kVehicle;
 
 /// Along the x axis, 7 m wide, from −20 m to 120 m.
@@ -24,7 +24,7 @@ map::RoadMap road() {
 
 /// The vehicle's centre in a box 12 m long and 2.4 m wide, between 2.5 and 3 s.
 TimedGoal goal_at(double x_m, double y_m, Window heading_rad = {-0.3, 0.3}) {
-  return {.step_s = kStep_s,
+  return {.step_s = kSearchStep_s,
           .states = {{.time_s = {2.5, 3.0},
                       .speed_mps = {},
                       .heading_rad = heading_rad,
@@ -36,8 +36,8 @@ TimedGoal goal_at(double x_m, double y_m, Window heading_rad = {-0.3, 0.3}) {
 Obstacle box(double x_m, double y_m, double width_m, double speed_mps = 0.0) {
   std::vector<geometry::TrajectoryPoint> points;
   for (int i = 0; i <= (speed_mps == 0.0 ? 0 : 40); ++i) {
-    points.push_back({.t_s = kStep_s * i,
-                      .x_m = x_m + speed_mps * kStep_s * i,
+    points.push_back({.t_s = kSearchStep_s * i,
+                      .x_m = x_m + speed_mps * kSearchStep_s * i,
                       .y_m = y_m,
                       .speed_mps = speed_mps});
   }
@@ -84,18 +84,18 @@ TEST(DriveSearch, DrivesWhatTheVehicleAndItsActuatorCan) {
     const double speed = 0.5 * (a.speed_mps + b.speed_mps);
     const geometry::Pose2 moved = a.map_from_vehicle.inverse() * b.map_from_vehicle;
     const double tangent = std::tan(0.5 * (a.steering_rad + b.steering_rad));
-    EXPECT_NEAR(moved.heading_rad, kStep_s * speed * tangent / kVehicle.wheelbase_m, 1e-3);
-    EXPECT_NEAR(moved.x_m, kStep_s * speed, 5e-3);
+    EXPECT_NEAR(moved.heading_rad, kSearchStep_s * speed * tangent / kVehicle.wheelbase_m, 1e-3);
+    EXPECT_NEAR(moved.x_m, kSearchStep_s * speed, 5e-3);
     EXPECT_NEAR(moved.y_m, 0.5 * moved.x_m * moved.heading_rad, 5e-3);
-    EXPECT_LE(std::abs(b.steering_rad - a.steering_rad), kStep_s * 0.4);
+    EXPECT_LE(std::abs(b.steering_rad - a.steering_rad), kSearchStep_s * 0.4);
     // What the lag of 0.45 s makes of a command: u = a + (a′ − a) / (1 − e^(−t/T)).
     const double command = a.acceleration_mps2 + (b.acceleration_mps2 - a.acceleration_mps2) /
-                                                     (1.0 - std::exp(-kStep_s / 0.45));
+                                                     (1.0 - std::exp(-kSearchStep_s / 0.45));
     EXPECT_GE(command, -8.0 - 1e-9);
     EXPECT_LE(command, 4.0 + 1e-9);
     EXPECT_NEAR(b.speed_mps - a.speed_mps,
-                0.5 * kStep_s * (a.acceleration_mps2 + b.acceleration_mps2), 0.02);
-    most_mps2 = std::max(most_mps2, speed * std::abs(moved.heading_rad) / kStep_s);
+                0.5 * kSearchStep_s * (a.acceleration_mps2 + b.acceleration_mps2), 0.02);
+    most_mps2 = std::max(most_mps2, speed * std::abs(moved.heading_rad) / kSearchStep_s);
   }
   EXPECT_LE(most_mps2, 3.9);
   EXPECT_GE(most_mps2, 2.0);  // it had to

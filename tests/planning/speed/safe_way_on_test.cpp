@@ -14,7 +14,7 @@
 namespace roadbed::tools {
 namespace {
 
-constexpr double kBraking_mps2 = 8.0, kFar_m = 1e4, kMargin_m = 0.3;
+constexpr double kHardBraking_mps2 = 8.0, kFar_m = 1e4, kMargin_m = 0.3;
 
 /// Drives along the x axis; its centre is at `x_m` after 1 s.
 planning::Obstacle moving(double x_m, double speed_mps) {
@@ -32,9 +32,9 @@ double least_gap_m(double gap_m, const planning::SpeedState& own, double other_m
   constexpr double kStep_s = 1e-3;
   double least_m = gap_m, speed_mps = own.speed_mps, acceleration_mps2 = own.acceleration_mps2;
   while (speed_mps > 0.0) {
-    acceleration_mps2 = control::actuate(acceleration_mps2, -kBraking_mps2, kStep_s);
+    acceleration_mps2 = control::actuate(acceleration_mps2, -kHardBraking_mps2, kStep_s);
     speed_mps += acceleration_mps2 * kStep_s;
-    if (other_mps > 0.0) other_mps = std::max(0.0, other_mps - kBraking_mps2 * kStep_s);
+    if (other_mps > 0.0) other_mps = std::max(0.0, other_mps - kHardBraking_mps2 * kStep_s);
     gap_m += (other_mps - std::max(0.0, speed_mps)) * kStep_s;
     least_m = std::min(least_m, gap_m);
   }
@@ -57,7 +57,7 @@ TEST(SafeWayOn, IsThereWhereBrakingEndsBeforeTheOther) {
     const double least_m = least_gap_m(gap_m, own, other);
     // A sample of the path, what counts as at rest, and what braking less at first may take.
     if (least_m > -0.6 && least_m < 1.6 + 0.3 * std::max(0.0, -other)) continue;
-    const auto bars = who_bars_way_on(own, occupancy, kFar_m, {}, kBraking_mps2);
+    const auto bars = who_bars_way_on(own, occupancy, kFar_m, {}, kHardBraking_mps2);
     EXPECT_EQ(bars.has_value(), least_m < 0.0)
         << x << " " << own.speed_mps << " " << own.acceleration_mps2 << " " << other;
     (bars ? barred : safe)++;
@@ -69,7 +69,7 @@ TEST(SafeWayOn, IsThereWhereBrakingEndsBeforeTheOther) {
 TEST(SafeWayOn, EndsBeforeTheRoadDoes) {
   const planning::PathProfile profile = tests::straight_profile(12.0);
   const planning::StGraph nobody(profile, {}, 0.0, 10, kMargin_m);
-  const double stop_m = 12.0 * geometry::kLongitudinal.actuator_lag_s + 72.0 / kBraking_mps2;
+  const double stop_m = 12.0 * geometry::kLongitudinal.actuator_lag_s + 72.0 / kHardBraking_mps2;
   const planning::SpeedState last{.t_s = 1.0, .ahead_m = 20.0, .speed_mps = 12.0};
   EXPECT_FALSE(who_bars_way_on(last, nobody, 20.0 + stop_m + 0.1));
   EXPECT_EQ(who_bars_way_on(last, nobody, 20.0 + stop_m - 0.2), planning::StInterval::kNoObstacle);
@@ -97,7 +97,7 @@ TEST(SafeWayOn, EverySpeedThatIsFoundHasOneWhateverItsHorizon) {
                                   .horizon_s = horizon_s,
                                   .end_m = kFar_m,
                                   .goals = {}},
-                                 {.least_mps2 = -kBraking_mps2});
+                                 {.least_mps2 = -kHardBraking_mps2});
       const planning::SpeedState& last = found.plan.back();
       const double gap_m =
           x_m - 2.25 - kMargin_m - geometry::VehicleShape{}.front_m() - last.ahead_m;

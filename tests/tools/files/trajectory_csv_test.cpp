@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "roadbed/map/files/input_error.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::tools {
 namespace {
@@ -17,13 +17,8 @@ using geometry::Trajectory;
 using geometry::TrajectoryPoint;
 using testing::HasSubstr;
 
-std::string refusal(std::string_view text) {
-  try {
-    parse_trajectory_csv(text, "drive.csv");
-  } catch (const map::InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+std::string csv_refusal(std::string_view text) {
+  return tests::refusal_of([&] { parse_trajectory_csv(text, "drive.csv"); });
 }
 
 TEST(TrajectoryCsv, ReadsBackEveryNumberThatItWroteBitForBit) {
@@ -85,38 +80,39 @@ TEST(TrajectoryCsv, TakesSpeedsFromTheWayWhereItHasNone) {
 
 TEST(TrajectoryCsv, NamesLineAndColumnOfWhatItCannotUse) {
   const std::string header = "t_s,x_m,y_m,heading_rad\n";
-  EXPECT_THAT(refusal("t_s,x_m,heading_rad\n0,0,0\n"), HasSubstr("drive.csv:1: column y_m"));
-  EXPECT_THAT(refusal("t_s,t_s,x_m,y_m,heading_rad\n"), HasSubstr("column t_s: is there twice"));
-  EXPECT_THAT(refusal(header + "0,0,0,0\n1,2,zebra,0\n"),
+  EXPECT_THAT(csv_refusal("t_s,x_m,heading_rad\n0,0,0\n"), HasSubstr("drive.csv:1: column y_m"));
+  EXPECT_THAT(csv_refusal("t_s,t_s,x_m,y_m,heading_rad\n"),
+              HasSubstr("column t_s: is there twice"));
+  EXPECT_THAT(csv_refusal(header + "0,0,0,0\n1,2,zebra,0\n"),
               HasSubstr("drive.csv:3: column y_m: \"zebra\""));
-  EXPECT_THAT(refusal(header + "0,nan,0,0\n"), HasSubstr("drive.csv:2: column x_m: \"nan\""));
-  EXPECT_THAT(refusal(header + "0,1e300,0,0\n"), HasSubstr("column x_m"));
-  EXPECT_THAT(refusal(header + "0,1e999,0,0\n"), HasSubstr("column x_m"));
-  EXPECT_THAT(refusal(header + "0,,0,0\n"), HasSubstr("column x_m: \"\""));
-  EXPECT_THAT(refusal(header + "0,1,0\n"), HasSubstr("drive.csv:2: row: has 3 fields"));
-  EXPECT_THAT(refusal(header), HasSubstr("at least one"));
-  EXPECT_THAT(refusal(""), HasSubstr("column t_s"));
+  EXPECT_THAT(csv_refusal(header + "0,nan,0,0\n"), HasSubstr("drive.csv:2: column x_m: \"nan\""));
+  EXPECT_THAT(csv_refusal(header + "0,1e300,0,0\n"), HasSubstr("column x_m"));
+  EXPECT_THAT(csv_refusal(header + "0,1e999,0,0\n"), HasSubstr("column x_m"));
+  EXPECT_THAT(csv_refusal(header + "0,,0,0\n"), HasSubstr("column x_m: \"\""));
+  EXPECT_THAT(csv_refusal(header + "0,1,0\n"), HasSubstr("drive.csv:2: row: has 3 fields"));
+  EXPECT_THAT(csv_refusal(header), HasSubstr("at least one"));
+  EXPECT_THAT(csv_refusal(""), HasSubstr("column t_s"));
 }
 
 TEST(TrajectoryCsv, SaysWhereTimeDoesNotIncrease) {
   const std::string header = "t_s,x_m,y_m,heading_rad\n";
-  EXPECT_THAT(refusal(header + "0,0,0,0\n1,0,0,0\n1,0,0,0\n"), HasSubstr("drive.csv:4"));
-  EXPECT_THAT(refusal(header + "0,0,0,0\n-1,0,0,0\n"),
+  EXPECT_THAT(csv_refusal(header + "0,0,0,0\n1,0,0,0\n1,0,0,0\n"), HasSubstr("drive.csv:4"));
+  EXPECT_THAT(csv_refusal(header + "0,0,0,0\n-1,0,0,0\n"),
               HasSubstr("-1 s does not come after 0 s of the row before"));
 }
 
 TEST(TrajectoryCsv, RefusesStepsThatNoVehicleMakes) {
   const std::string header = "t_s,x_m,y_m,heading_rad\n";
-  EXPECT_THAT(refusal(header + "0,0,0,0\n0.1,1,0,0\n0.2,51,0,0\n"),
+  EXPECT_THAT(csv_refusal(header + "0,0,0,0\n0.1,1,0,0\n0.2,51,0,0\n"),
               HasSubstr("drive.csv:4: columns x_m, y_m: 50 m in 0.1 s"));
-  EXPECT_THAT(refusal(header + "0,0,0,0\n0.1,1,0,0\n0.2,20001,0,0\n0.3,3,0,0\n"),
+  EXPECT_THAT(csv_refusal(header + "0,0,0,0\n0.1,1,0,0\n0.2,20001,0,0\n0.3,3,0,0\n"),
               HasSubstr("drive.csv:4"));
-  EXPECT_THAT(refusal(header + "0,0,0,0\n0.1,0.5,0,3.1\n"),
+  EXPECT_THAT(csv_refusal(header + "0,0,0,0\n0.1,0.5,0,3.1\n"),
               HasSubstr("drive.csv:3: column heading_rad: turns by 3.1 rad in 0.1 s"));
   // Sparse rows, noise between dense ones, and headings that pass by ±π are a drive.
-  EXPECT_EQ(refusal(header + "0,0,0,0\n10,400,0,0\n"), "accepted");
-  EXPECT_EQ(refusal(header + "0,0,0,0\n0.001,0.4,0.3,0.1\n0.002,0,0,0\n"), "accepted");
-  EXPECT_EQ(refusal(header + "0,0,0,3.1\n0.1,-1,0,-3.1\n0.2,-2,0,3.1\n"), "accepted");
+  EXPECT_EQ(csv_refusal(header + "0,0,0,0\n10,400,0,0\n"), "accepted");
+  EXPECT_EQ(csv_refusal(header + "0,0,0,0\n0.001,0.4,0.3,0.1\n0.002,0,0,0\n"), "accepted");
+  EXPECT_EQ(csv_refusal(header + "0,0,0,3.1\n0.1,-1,0,-3.1\n0.2,-2,0,3.1\n"), "accepted");
 }
 
 // A drive along a bend, with headings as they are and in degrees.
@@ -133,10 +129,11 @@ TEST(TrajectoryCsv, RefusesHeadingsThatAreDegrees) {
         y_m += 0.5 * std::sin(heading_rad + 0.25 * per_m);
         heading_rad += 0.5 * per_m;
       }
-      EXPECT_EQ(refusal(radians), "accepted") << start_rad << " " << per_m;
-      EXPECT_EQ(refusal(backwards), "accepted") << start_rad << " " << per_m;
-      EXPECT_THAT(refusal(degrees), HasSubstr("looks like degrees")) << start_rad << " " << per_m;
-      EXPECT_THAT(refusal(degrees), HasSubstr("divide the headings by 57.29577951308232"));
+      EXPECT_EQ(csv_refusal(radians), "accepted") << start_rad << " " << per_m;
+      EXPECT_EQ(csv_refusal(backwards), "accepted") << start_rad << " " << per_m;
+      EXPECT_THAT(csv_refusal(degrees), HasSubstr("looks like degrees"))
+          << start_rad << " " << per_m;
+      EXPECT_THAT(csv_refusal(degrees), HasSubstr("divide the headings by 57.29577951308232"));
     }
   }
 }

@@ -8,6 +8,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::tools {
 namespace {
@@ -35,13 +36,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-std::string refusal_of(const std::string& text) {
-  try {
-    parse_vehicle(text, "car.yaml");
-  } catch (const map::InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+std::string yaml_refusal(const std::string& text) {
+  return tests::refusal_of([&] { parse_vehicle(text, "car.yaml"); });
 }
 
 // Bodies of boxes: Autoware's corners are at front_overhang before the front axle, rear_overhang
@@ -75,7 +71,7 @@ TEST(AutowareVehicle, IsTakenHoweverYamlMayWriteIt) {
 
 TEST(AutowareVehicle, RefusesWithItsLineWhatItCannotUse) {
   const auto with = [](const std::string& from, const std::string& to) {
-    return refusal_of(replaced(kVan, from, to));
+    return yaml_refusal(replaced(kVan, from, to));
   };
   EXPECT_EQ(with("wheel_base: 3.1", "wheel_base: far"),
             "car.yaml:5: wheel_base: is \"far\", needs a number from 0 to 1000; mend it");
@@ -94,8 +90,8 @@ TEST(AutowareVehicle, RefusesWithItsLineWhatItCannotUse) {
   EXPECT_THAT(with("    wheel_base", "wheel_base"), HasSubstr("stands beside ros__parameters"));
   EXPECT_THAT(with("ros__parameters:", "parameters:"), HasSubstr("needs ros__parameters"));
   EXPECT_THAT(with("vehicle_height: 2.4", "vehicle_height: 0"), HasSubstr("height_m"));
-  EXPECT_THAT(refusal_of("# nothing\n"), HasSubstr("has no /**"));
-  EXPECT_THAT(refusal_of("/**: &a\n"), HasSubstr("car.yaml:1"));
+  EXPECT_THAT(yaml_refusal("# nothing\n"), HasSubstr("has no /**"));
+  EXPECT_THAT(yaml_refusal("/**: &a\n"), HasSubstr("car.yaml:1"));
 }
 
 // Of CommonRoad's package: the centre of mass, which its states are of, is the body's centre.
@@ -137,7 +133,7 @@ TEST(VehicleFile, IsToldByContent) {
   const tests::TemporaryFolder folder;
   EXPECT_EQ(read_vehicle(folder.write("a", kVan)).shape.wheelbase_m, 3.1);
   EXPECT_EQ(read_vehicle(folder.write("b", "\n {\"wheelbase_m\": 3}")).shape.wheelbase_m, 3.0);
-  EXPECT_THAT(refusal_of("wheel_base: 3"), HasSubstr("is not JSON"));
+  EXPECT_THAT(yaml_refusal("wheel_base: 3"), HasSubstr("is not JSON"));
 }
 
 std::string scenario_with(const std::string& vehicle) {

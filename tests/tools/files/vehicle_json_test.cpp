@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/tests/support/refusal_of.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools {
@@ -14,13 +15,8 @@ namespace {
 using geometry::VehicleShape;
 using testing::HasSubstr;
 
-std::string refusal(std::string_view text) {
-  try {
-    parse_vehicle_json(text, "car.json");
-  } catch (const map::InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+std::string json_refusal(std::string_view text) {
+  return tests::refusal_of([&] { parse_vehicle_json(text, "car.json"); });
 }
 
 TEST(VehicleJson, AnEmptyObjectIsTheDefaultVehicle) {
@@ -46,15 +42,15 @@ TEST(VehicleJson, EveryKeySetsItsOwnMeasure) {
 }
 
 TEST(VehicleJson, RefusesUnknownKeysWrongTypesAndMeasuresThatDoNotFit) {
-  EXPECT_THAT(refusal(R"({"lenght_m":5})"), HasSubstr("lenght_m"));
-  EXPECT_THAT(refusal(R"({"length_m":"5"})"), HasSubstr("length_m: is"));
-  EXPECT_THAT(refusal(R"({"length_m":-5})"), HasSubstr("is -5"));
-  EXPECT_THAT(refusal(R"({"length_m":1e9})"), HasSubstr("0 to 1000"));
-  EXPECT_THAT(refusal(R"({"width_m":0})"), HasSubstr("width_m must be finite and positive"));
-  EXPECT_THAT(refusal(R"({"length_m":2})"), HasSubstr("front axle inside the body"));
-  EXPECT_THAT(refusal("[1,2]"), HasSubstr("array"));
-  EXPECT_THAT(refusal("{\"length_m\":"), HasSubstr("car.json:byte "));
-  EXPECT_THAT(refusal(""), HasSubstr("is not JSON"));
+  EXPECT_THAT(json_refusal(R"({"lenght_m":5})"), HasSubstr("lenght_m"));
+  EXPECT_THAT(json_refusal(R"({"length_m":"5"})"), HasSubstr("length_m: is"));
+  EXPECT_THAT(json_refusal(R"({"length_m":-5})"), HasSubstr("is -5"));
+  EXPECT_THAT(json_refusal(R"({"length_m":1e9})"), HasSubstr("0 to 1000"));
+  EXPECT_THAT(json_refusal(R"({"width_m":0})"), HasSubstr("width_m must be finite and positive"));
+  EXPECT_THAT(json_refusal(R"({"length_m":2})"), HasSubstr("front axle inside the body"));
+  EXPECT_THAT(json_refusal("[1,2]"), HasSubstr("array"));
+  EXPECT_THAT(json_refusal("{\"length_m\":"), HasSubstr("car.json:byte "));
+  EXPECT_THAT(json_refusal(""), HasSubstr("is not JSON"));
 }
 
 constexpr std::string_view kMirrors =
@@ -96,7 +92,7 @@ TEST(VehicleJson, CirclesStandInPlaceOfTheRectangleAndPartsBesideIt) {
 
 TEST(VehicleJson, RefusesPartsThatCannotBeMeant) {
   const auto part = [](const std::string& measures) {
-    return refusal(R"({"parts":[{"name":"load",)" + measures + "}]}");
+    return json_refusal(R"({"parts":[{"name":"load",)" + measures + "}]}");
   };
   EXPECT_THAT(part(R"("rear_m":0,"front_m":1,"right_m":-1,"left_m":1,"from_height_m":2,
                       "to_height_m":2)"),
@@ -114,24 +110,26 @@ TEST(VehicleJson, RefusesPartsThatCannotBeMeant) {
   EXPECT_THAT(part(R"("rear_m":null,"front_m":1,"right_m":-1,"left_m":1,"from_height_m":1,
                       "to_height_m":2)"),
               HasSubstr("/parts/0/rear_m"));
-  EXPECT_THAT(refusal(R"({"mirrors":{"beyond_m":-0.2,"rear_m":1,"front_m":2,"from_height_m":1,
+  EXPECT_THAT(json_refusal(R"({"mirrors":{"beyond_m":-0.2,"rear_m":1,"front_m":2,"from_height_m":1,
                           "to_height_m":2}})"),
               HasSubstr("/mirrors/beyond_m: is -0.2"));
-  EXPECT_THAT(refusal(R"({"mirrors":{"beyond_m":0,"rear_m":1,"front_m":2,"from_height_m":1,
+  EXPECT_THAT(json_refusal(R"({"mirrors":{"beyond_m":0,"rear_m":1,"front_m":2,"from_height_m":1,
                           "to_height_m":2}})"),
               HasSubstr("left mirror"));
-  EXPECT_THAT(refusal(R"({"circles":[{"x_m":0,"radius_m":0}]})"), HasSubstr("/radius_m: is 0"));
-  EXPECT_THAT(refusal(R"({"circles":{"x_m":0,"radius_m":1}})"), HasSubstr("/circles: is"));
-  EXPECT_THAT(refusal(R"({"parts":[{"name":"body","rear_m":0,"front_m":1,"right_m":-1,"left_m":1,
+  EXPECT_THAT(json_refusal(R"({"circles":[{"x_m":0,"radius_m":0}]})"),
+              HasSubstr("/radius_m: is 0"));
+  EXPECT_THAT(json_refusal(R"({"circles":{"x_m":0,"radius_m":1}})"), HasSubstr("/circles: is"));
+  EXPECT_THAT(
+      json_refusal(R"({"parts":[{"name":"body","rear_m":0,"front_m":1,"right_m":-1,"left_m":1,
                           "from_height_m":1,"to_height_m":2}]})"),
-              HasSubstr("two parts of one name"));
+      HasSubstr("two parts of one name"));
 }
 
 TEST(VehicleJson, RefusesNamesThatCouldForgeLinesAndHeightsThatAreNone) {
   const auto named = [](const std::string& name, const std::string& top) {
-    return refusal(R"({"parts":[{"name":")" + name +
-                   R"(","rear_m":0,"front_m":1,"right_m":-1,"left_m":1,"from_height_m":1,)" +
-                   R"("to_height_m":)" + top + "}]}");
+    return json_refusal(R"({"parts":[{"name":")" + name +
+                        R"(","rear_m":0,"front_m":1,"right_m":-1,"left_m":1,"from_height_m":1,)" +
+                        R"("to_height_m":)" + top + "}]}");
   };
   EXPECT_EQ(named("load", "2"), "accepted");
   EXPECT_THAT(named(R"(load\ncertificate      holds)", "2"),

@@ -10,6 +10,7 @@
 
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tests/support/browser.h"
+#include "roadbed/tests/support/holds.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/support/sample_report.h"
 #include "roadbed/tools/report/audit_pages.h"
@@ -19,12 +20,8 @@
 namespace roadbed::tools {
 namespace {
 
+using tests::holds;
 using tests::page_after_scripts;
-
-// Not testing::HasSubstr, which would print the whole page.
-bool holds(const std::string& page, std::string_view part) {
-  return page.find(part) != std::string::npos;
-}
 
 // The page with a script at its end that writes down which files it asked for.
 std::string page_that_counts_requests(const ReportInput& input) {

@@ -7,20 +7,16 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "roadbed/tests/support/holds.h"
 #include "roadbed/tests/support/sample_report.h"
 
 namespace roadbed::tools {
 namespace {
 
 using nlohmann::json;
-
-// Not testing::HasSubstr, which would print the whole page.
-bool holds(const std::string& page, std::string_view part) {
-  return page.find(part) != std::string::npos;
-}
+using tests::holds;
 
 std::string between(const std::string& text, const std::string& from, const std::string& to) {
   const std::size_t start = text.find(from) + from.size();

@@ -15,27 +15,25 @@ namespace roadbed::tools {
 namespace {
 
 using testing::HasSubstr;
+using tests::driven;
+using Driven = tests::DrivenScenario;
 
-struct Driven : tests::DrivenScenario {
-  bool passes(const std::string& lane) const {
-    return std::ranges::any_of(world.route.legs, [&](const planning::RouteLeg& leg) {
-      return world.road_map.lane(leg.lane).name == lane;
-    });
-  }
+bool passes_lane(const Driven& d, const std::string& lane) {
+  return std::ranges::any_of(d.world.route.legs, [&](const planning::RouteLeg& leg) {
+    return d.world.road_map.lane(leg.lane).name == lane;
+  });
+}
 
-  /// Events that the road is blocked.
-  std::vector<DriveEvent> blocked() const {
-    std::vector<DriveEvent> found;
-    std::ranges::copy_if(drive.events, std::back_inserter(found), [](const DriveEvent& event) {
-      return event.text.starts_with("the road is blocked");
-    });
-    return found;
-  }
-};
+/// Events that the road is blocked.
+std::vector<DriveEvent> blocked_events(const Driven& d) {
+  std::vector<DriveEvent> found;
+  std::ranges::copy_if(d.drive.events, std::back_inserter(found), [](const DriveEvent& event) {
+    return event.text.starts_with("the road is blocked");
+  });
+  return found;
+}
 
 Scenario closed_road() { return tests::scenario_of("closed_road"); }
-
-Driven driven(const Scenario& scenario) { return {tests::driven(scenario)}; }
 
 ScenarioObstacle barrier(const std::string& id, const std::string& place, double width_m = 4.2) {
   return {.id = id,
@@ -74,7 +72,7 @@ TEST(BlockedRoadDrives, WhoDrivesOnBeforeTenSecondsIsFollowed) {
       car("lorry", "lane:2202/0/-1@12", "lane:1/3/-1@100", {{0.0, 0.0}, {22.0, 0.0}, {28.0, 8.0}})};
   const Driven d = driven(scenario);
   EXPECT_EQ(d.drive.verdict.outcome, Outcome::goal_reached) << d.drive.verdict.text;
-  EXPECT_TRUE(d.blocked().empty());
+  EXPECT_TRUE(blocked_events(d).empty());
   EXPECT_TRUE(d.drive.given_up.empty());
   // It stood behind the lorry: from 15 s on, for less than 10 s.
   EXPECT_LT(d.drive.trajectory.at(22.0).speed_mps, 0.05);
@@ -91,7 +89,7 @@ TEST(BlockedRoadDrives, BehindALorryThatStandsInTheStreetThereIsNoOtherRouteAndI
       d.drive.verdict.text,
       HasSubstr("the road is blocked: barrier works has not moved for 10 s; no other route: "
                 "no lane sequence leads from lane 2/3/1 to lane 1/3/-1"));
-  EXPECT_EQ(d.blocked().size(), 1U);
+  EXPECT_EQ(blocked_events(d).size(), 1U);
   EXPECT_EQ(d.drive.cycles.back().behaviour, planning::Behaviour::stop);
   EXPECT_TRUE(d.drive.given_up.empty());
   expect_keeps_the_rules(d);
@@ -108,13 +106,13 @@ TEST(BlockedRoadDrives, AnExitThatHasBeenEnteredIsLeftWhereAPathStillLeadsOut) {
   const Driven in_mouth = with_barrier_at(10.0);
   ASSERT_EQ(in_mouth.drive.given_up.size(), 1U);
   EXPECT_EQ(in_mouth.world.road_map.lane(in_mouth.world.route.legs[0].lane).name, "2200/0/-1");
-  EXPECT_THAT(in_mouth.blocked().at(0).text, HasSubstr("(+49")) << "against the blocked way";
+  EXPECT_THAT(blocked_events(in_mouth).at(0).text, HasSubstr("(+49")) << "against the blocked way";
   EXPECT_GT(in_mouth.drive.samples.back().s_m, 100.0);
   const Driven half_in = with_barrier_at(12.0);
-  EXPECT_THAT(half_in.blocked().at(0).text,
+  EXPECT_THAT(blocked_events(half_in).at(0).text,
               HasSubstr("no other route: no path leads past what stands there to lane 2200/0/-1"));
   const Driven in_exit = with_barrier_at(15.0);
-  EXPECT_THAT(in_exit.blocked().at(0).text,
+  EXPECT_THAT(blocked_events(in_exit).at(0).text,
               HasSubstr("no lane sequence leads from lane 2202/0/-1 to lane 1/3/-1"));
 }
 
@@ -127,7 +125,7 @@ TEST(BlockedRoadDrives, WhatClosedTheFirstWayIsKnownWhereTheSecondIsClosedToo) {
   EXPECT_EQ(d.drive.verdict.outcome, Outcome::goal_reached) << d.drive.verdict.text;
   ASSERT_EQ(d.drive.given_up.size(), 2U);
   EXPECT_EQ(d.world.blockers.size(), 2U);
-  EXPECT_TRUE(d.passes("6/0/1"));  // by the bypass, the only way that is left
+  EXPECT_TRUE(passes_lane(d, "6/0/1"));  // by the bypass, the only way that is left
   EXPECT_GT(d.drive.samples.back().s_m, 1500.0);
   EXPECT_NEAR(d.drive.last_line_from_s_m + d.world.line.goal_s_m(), d.drive.samples.back().s_m,
               1.0);
@@ -174,7 +172,7 @@ TEST(BlockedRoadDrives, AQueueAtARedLightIsWaitedBehind) {
   }
   const Driven d = driven(scenario);
   EXPECT_EQ(d.drive.verdict.outcome, Outcome::goal_reached) << d.drive.verdict.text;
-  EXPECT_TRUE(d.blocked().empty());
+  EXPECT_TRUE(blocked_events(d).empty());
   for (double t_s = 30.0; t_s < leaves_s; t_s += 0.1) {
     EXPECT_LT(d.drive.trajectory.at(t_s).speed_mps, 0.05) << t_s;
   }
@@ -192,7 +190,7 @@ TEST(BlockedRoadDrives, ATrafficJamThatMovesInBetweenIsWaitedBehind) {
                         car("last", "lane:2202/0/-1@12", "lane:1/3/-1@100", speeds)};
   scenario.duration_s = 70.0;
   const Driven d = driven(scenario);
-  EXPECT_TRUE(d.blocked().empty());
+  EXPECT_TRUE(blocked_events(d).empty());
   EXPECT_EQ(d.drive.cycles.back().lead->id, "last");
   expect_keeps_the_rules(d);
 }

@@ -63,7 +63,7 @@ TEST(PlannerOptions, RefuseWhatIsUnknownOrOutOfRangeAndNameThePlace) {
   expect("", "o.json");
 }
 
-Drive driven(const std::string& scenario_name, const std::string& options) {
+Drive driven_with(const std::string& scenario_name, const std::string& options) {
   Scenario scenario = read_scenario(tests::data_folder() / "scenarios" / scenario_name);
   changes_of(options).apply_to(scenario.options);
   World world = make_world(scenario);
@@ -83,13 +83,13 @@ TEST(PlannerOptions, RestatedDefaultsAreTheSameDrive) {
                 "\": " + std::to_string(planning::of(defaults.weights, term));
   }
   restated += R"(}, "limits": {"clearance_m": 0.3, "standstill_gap_m": 5}})";
-  EXPECT_EQ(write_trajectory_csv(driven("parked_car.json", restated).trajectory),
-            write_trajectory_csv(driven("parked_car.json", "{}").trajectory));
+  EXPECT_EQ(write_trajectory_csv(driven_with("parked_car.json", restated).trajectory),
+            write_trajectory_csv(driven_with("parked_car.json", "{}").trajectory));
 }
 
 TEST(PlannerOptions, SportierStylesAreFasterRoundARoundabout) {
   const auto at_goal_s = [](const std::string& style) {
-    const Drive drive = driven("roundabout.json", R"({"style": ")" + style + "\"}");
+    const Drive drive = driven_with("roundabout.json", R"({"style": ")" + style + "\"}");
     EXPECT_EQ(drive.verdict.outcome, Outcome::goal_reached) << drive.verdict.text;
     return drive.verdict.at_s;
   };
@@ -101,7 +101,7 @@ TEST(PlannerOptions, SportierStylesAreFasterRoundARoundabout) {
 TEST(PlannerOptions, ClearanceIsKeptBesideAParkedCar) {
   for (const double asked_m : {0.3, 0.5, 0.7}) {
     const std::string limits = R"({"limits": {"clearance_m": )" + std::to_string(asked_m) + "}}";
-    const double kept_m = clearance_m(driven("parked_car.json", limits));
+    const double kept_m = clearance_m(driven_with("parked_car.json", limits));
     EXPECT_GE(kept_m, asked_m - 0.01);
     EXPECT_LT(kept_m, asked_m + 0.1);
   }
@@ -109,9 +109,9 @@ TEST(PlannerOptions, ClearanceIsKeptBesideAParkedCar) {
 
 // It is past the slower car by then.
 TEST(PlannerOptions, DesiredSpeedIsKept) {
-  const Drive slow = driven("pass_car.json", R"({"limits": {"desired_speed_mps": 9}})");
+  const Drive slow = driven_with("pass_car.json", R"({"limits": {"desired_speed_mps": 9}})");
   EXPECT_NEAR(slow.trajectory.at(9.0).speed_mps, 9.0, 0.3);
-  EXPECT_NEAR(driven("pass_car.json", "{}").trajectory.at(9.0).speed_mps, 12.0, 0.3);
+  EXPECT_NEAR(driven_with("pass_car.json", "{}").trajectory.at(9.0).speed_mps, 12.0, 0.3);
 }
 
 double mean_length_m(const Drive& drive) {
@@ -122,8 +122,8 @@ double mean_length_m(const Drive& drive) {
 
 TEST(PlannerOptions, WeightsChooseTheCandidates) {
   const Drive hurried =
-      driven("lane_change.json", R"({"weights": {"length": 0, "time": 50, "curvature": 0}})");
-  EXPECT_LT(mean_length_m(hurried), mean_length_m(driven("lane_change.json", "{}")) - 3.0);
+      driven_with("lane_change.json", R"({"weights": {"length": 0, "time": 50, "curvature": 0}})");
+  EXPECT_LT(mean_length_m(hurried), mean_length_m(driven_with("lane_change.json", "{}")) - 3.0);
 }
 
 // 12 m/s behind a lead at 8 m/s on a one-way road: the gap that it settles at is τ_h v + d_0.

@@ -19,7 +19,7 @@
 namespace roadbed::map {
 namespace {
 
-constexpr double kCell_m = 0.25;
+constexpr double kResolution_m = 0.25;
 
 /// A point and where it was measured from.
 struct Shot {
@@ -104,7 +104,7 @@ octomap::point3d to_octomap(const Eigen::Vector3f& point) {
   return {point.x(), point.y(), point.z()};
 }
 
-const OccupancyOptions kNotSticky{.resolution_m = kCell_m, .sticky_hits = false};
+const OccupancyOptions kNotSticky{.resolution_m = kResolution_m, .sticky_hits = false};
 
 TEST(SensorOfEachPoint, LeftAtZeroInAllPointsSaysNothing) {
   const std::string header =
@@ -123,7 +123,7 @@ TEST(SensorOfEachPoint, LeftAtZeroInAllPointsSaysNothing) {
 TEST(SensorOfEachPoint, EveryFormatGivesTheTreeOfInsertPointCloudForEachRun) {
   std::mt19937 random(1);
   const auto runs = random_runs(random, 60, 9);
-  octomap::OcTree theirs(kCell_m);
+  octomap::OcTree theirs(kResolution_m);
   for (const auto& run : runs) {
     octomap::Pointcloud points;
     for (const Shot& shot : run) points.push_back(to_octomap(shot.point));
@@ -149,7 +149,7 @@ TEST(SensorOfEachPoint, EveryFormatGivesTheTreeOfInsertPointCloudForEachRun) {
 TEST(SensorOfEachPoint, APointAScanIsTheTreeOfInsertRay) {
   std::mt19937 random(2);
   std::vector<Shot> shots = in_a_row(random_runs(random, 300, 1));
-  octomap::OcTree theirs(kCell_m);
+  octomap::OcTree theirs(kResolution_m);
   for (Shot& shot : shots) {
     const octomap::point3d end = theirs.keyToCoord(theirs.coordToKey(to_octomap(shot.point)));
     shot.point = {end.x(), end.y(), end.z()};  // rays are drawn to the middle of a cell
@@ -169,7 +169,7 @@ TEST(SensorOfEachPoint, StickyCloudsOfOnePositionEachAreTheSameFile) {
     for (const Shot& shot : run) apart.back().points.push_back(shot.point);
   }
   const PointCloud together = parse_point_cloud(csv_of(in_a_row(runs)), "a.csv");
-  const OccupancyOptions options{.resolution_m = kCell_m};
+  const OccupancyOptions options{.resolution_m = kResolution_m};
   EXPECT_EQ(OccupancyMap::build_bt(std::vector{together}, options).bytes,
             OccupancyMap::build_bt(apart, options).bytes);
 }
@@ -187,7 +187,7 @@ TEST(SensorOfEachPoint, LeavesOutPointsAndKeepsHitsWhoseSensorIsNotFinite) {
   EXPECT_EQ(cloud.scans[2].first, 4u);
   ASSERT_EQ(cloud.notes.size(), 1u);
   EXPECT_TRUE(cloud.notes[0].starts_with("2 points have no finite sensor position"));
-  const OccupancyMap map = OccupancyMap::build(std::vector{cloud}, {.resolution_m = kCell_m});
+  const OccupancyMap map = OccupancyMap::build(std::vector{cloud}, {.resolution_m = kResolution_m});
   EXPECT_EQ(map.at({0.1, 3.1, 0.1}), CellState::occupied);
   EXPECT_EQ(map.at({0.1, 2.1, 0.1}), CellState::unknown);
   EXPECT_EQ(map.at({2.1, 0.1, 0.1}), CellState::free);

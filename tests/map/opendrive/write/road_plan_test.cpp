@@ -10,15 +10,11 @@
 #include <vector>
 
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/opendrive/write/write.h"
+#include "roadbed/tests/map/opendrive/write/written_map.h"
 #include "roadbed/tests/support/made_road.h"
 
 namespace roadbed::map {
 namespace {
-
-opendrive::OpenDriveFile file_of(const RoadMap& road_map, int minor = 8) {
-  return opendrive::write_open_drive(road_map, {road_map.crs(), {}, minor});
-}
 
 // The way of each driving lane: where it begins and ends.
 std::vector<std::array<Eigen::Vector2d, 2>> ways_of(const RoadMap& road_map) {
