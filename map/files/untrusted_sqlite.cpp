@@ -40,8 +40,10 @@ std::string schema_fault(sqlite3* database) {
                                                                              sqlite3_finalize);
   const int step = status == SQLITE_OK ? sqlite3_step(prepared) : status;
   if (step == SQLITE_DONE) return {};
-  return step == SQLITE_ROW ? "a column that computes its values"
-                            : one_line(sqlite3_errmsg(database));
+  if (step == SQLITE_ROW) return "a column that computes its values";
+  if (step == SQLITE_INTERRUPT)
+    return "a schema that takes longer to read than its size can ask for";
+  return one_line(sqlite3_errmsg(database));
 }
 
 }  // namespace roadbed::map::files

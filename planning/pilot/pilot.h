@@ -41,7 +41,7 @@ struct PilotView {
   double t_s = 0.0;
   VehicleState ego;
   std::vector<Detection> objects;
-  /// False: they were not measured at this time, and are believed to go on, for 10 s at most.
+  /// False: nobody looked for objects; those known are believed to go on, for 10 s at most.
   bool has_objects = true;
   std::vector<SeenLight> lights;  ///< one keeps what it showed; never named, it is dark
 };

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "roadbed/map/compiled/compiled_map.h"
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/occupancy/octree/tiles_index.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 #include "roadbed/tools/audit/certificate_json.h"
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/commands/commands.h"
@@ -91,18 +91,13 @@ std::string format_file(const std::string& name) {
 }
 
 std::string refusal_of(const Read& read, const std::string& bytes, const std::string& name) {
-  try {
-    read(bytes, name);
-  } catch (const map::InputError& error) {
-    return error.what();
-  }
-  return "";
+  return tests::refusal_of([&] { read(bytes, name); });
 }
 
 TEST(FormatVersions, AreReadOrRefusedWithAReason) {
   for (const VersionedFormat& format : formats()) {
     for (const std::string& name : format.files) {
-      EXPECT_EQ(refusal_of(format.read, format_file(name), name), "");
+      EXPECT_EQ(refusal_of(format.read, format_file(name), name), "accepted");
     }
     for (const std::string& name : format.refused) {
       const std::string reason = refusal_of(format.read, format_file(name), name);

@@ -123,20 +123,18 @@ Array1 clearance(const Occupancy& occupancy, nb::handle poses, const ClearanceQu
 }
 
 nb::dict cells_of(const Occupancy& occupancy) {
-  std::vector<map::OccupancyCell> cells;
-  {
-    const nb::gil_scoped_release released;
-    cells = occupancy.source->cells();
-  }
   std::vector<double> centres, sizes;
   std::vector<std::int8_t> occupied;
-  for (const map::OccupancyCell& cell : cells) {
-    centres.insert(centres.end(), cell.centre_in_source.begin(), cell.centre_in_source.end());
-    sizes.push_back(cell.size_m);
-    occupied.push_back(cell.state == map::CellState::occupied ? 1 : 0);
+  {
+    const nb::gil_scoped_release released;
+    occupancy.source->for_each_cell([&](const map::OccupancyCell& cell) {
+      centres.insert(centres.end(), cell.centre_in_source.begin(), cell.centre_in_source.end());
+      sizes.push_back(cell.size_m);
+      occupied.push_back(cell.state == map::CellState::occupied ? 1 : 0);
+    });
   }
   nb::dict columns;
-  columns["centre"] = owned<double, 2>(std::move(centres), {cells.size(), 3});
+  columns["centre"] = owned<double, 2>(std::move(centres), {sizes.size(), 3});
   columns["size_m"] = owned(std::move(sizes));
   columns["occupied"] = nb::cast(owned(std::move(occupied))).attr("astype")("bool");
   return columns;

@@ -18,6 +18,7 @@
 #include "roadbed/tests/support/made_argoverse.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map {
 namespace {
@@ -51,12 +52,7 @@ std::vector<std::string> rules(const RoadMap& road_map) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return tests::refusal_of([&] { parse(text); });
 }
 
 TEST(Argoverse, IsToldByItsFirstKey) {

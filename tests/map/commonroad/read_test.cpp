@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map {
 namespace {
@@ -336,12 +336,7 @@ TEST(CommonRoad, UnknownElementsAreCounted) {
 }
 
 std::string message_of(const std::string& body, const std::string& version = "2020a") {
-  try {
-    parse(body, version);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return tests::refusal_of([&] { parse(body, version); });
 }
 
 TEST(CommonRoad, UnusableFilesAreRefusedWithTheirPlace) {

@@ -7,6 +7,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map::commonroad {
 namespace {
@@ -130,12 +131,7 @@ TEST(CommonRoadScenario, GroupsOfShapesAreTakenTogether) {
 }
 
 std::string message_of(const std::string& body) {
-  try {
-    parse(body);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return tests::refusal_of([&] { parse(body); });
 }
 
 TEST(CommonRoadScenario, UnusableObstaclesAreRefusedWithTheirPlace) {

@@ -17,6 +17,7 @@
 #include "roadbed/tests/support/packed.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map {
 namespace {
@@ -42,12 +43,7 @@ class WrittenPipe {
 };
 
 std::string refusal_of(const std::filesystem::path& file) {
-  try {
-    read_file(file);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return tests::refusal_of([&] { read_file(file); });
 }
 
 std::string town() { return tests::bytes_of(tests::data_folder() / "town.xodr"); }

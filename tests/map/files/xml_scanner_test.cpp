@@ -4,21 +4,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <pugixml.hpp>
 #include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/files/xml_characters.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map {
 namespace {
 
 using testing::HasSubstr;
+using tests::refusal_of;
 
 const char* const kDocument = R"(<?xml version="1.0"?>
 <!-- <a> is no element --><!DOCTYPE osm [<!ENTITY e "]>"> <!-- ' --> ]>
@@ -28,15 +28,6 @@ const char* const kDocument = R"(<?xml version="1.0"?>
 y"	v='"'/><way><nd ref="7"/><nd ref="8"></nd></way >
   <e.f_g-h:i j=""/></osm>
 )";
-
-std::string refusal(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "was read";
-}
 
 void read_all(const std::string& text) {
   XmlScanner scanner(text, "f.osm");
@@ -89,7 +80,7 @@ TEST(XmlScanner, ReadsTheElementsThatPugixmlReads) {
     }
     pugi::xml_document document;
     if (!document.load_buffer(text.data(), text.size())) continue;
-    if (refusal([&] { read_all(text); }) != "was read") continue;
+    if (refusal_of([&] { read_all(text); }) != "accepted") continue;
     Elements expected;
     std::vector<std::vector<std::string>> attributes;
     walk(document.document_element(), 1, expected, attributes);
@@ -120,7 +111,7 @@ TEST(XmlScanner, SaysWhereAndWhyATextIsNotWellFormed) {
       {"<!DOCTYPE a [<a>", "the document type does not end"},
       {"<a><!DOCTYPE b></a>", "a tag begins with <!"}};
   for (const auto& [text, reason] : bad) {
-    EXPECT_THAT(refusal([&text = text] { read_all(text); }), HasSubstr(reason)) << text;
+    EXPECT_THAT(refusal_of([&text = text] { read_all(text); }), HasSubstr(reason)) << text;
   }
 }
 
@@ -128,8 +119,8 @@ TEST(XmlScanner, BoundsWhatATextCanMakeItRemember) {
   std::string deep, wide = "<a";
   for (int i = 0; i < 2'000; ++i) deep += "<a>";
   for (int i = 0; i < 20'000; ++i) wide += " b=''";
-  EXPECT_THAT(refusal([&] { read_all(deep); }), HasSubstr("nested deeper than 1,000"));
-  EXPECT_THAT(refusal([&] { read_all(wide + "/>"); }), HasSubstr("more than 10,000 attributes"));
+  EXPECT_THAT(refusal_of([&] { read_all(deep); }), HasSubstr("nested deeper than 1,000"));
+  EXPECT_THAT(refusal_of([&] { read_all(wide + "/>"); }), HasSubstr("more than 10,000 attributes"));
 }
 
 TEST(XmlScanner, ReadsOneElementAlone) {
@@ -176,9 +167,10 @@ TEST(XmlScanner, StretchesThatAreAllWholeHoldWhatTheTextHolds) {
     }
     cuts.push_back(text.size());
     std::string found;
-    if (refusal([&] { found = in_stretches(text, cuts); }) != "was read" || found.empty()) continue;
+    if (refusal_of([&] { found = in_stretches(text, cuts); }) != "accepted" || found.empty())
+      continue;
     std::string one;
-    ASSERT_EQ(refusal([&] { one = in_stretches(text, {0, text.size()}); }), "was read") << text;
+    ASSERT_EQ(refusal_of([&] { one = in_stretches(text, {0, text.size()}); }), "accepted") << text;
     ASSERT_EQ(found, one) << text;
     if (cuts.size() > 2) ++whole;
   }

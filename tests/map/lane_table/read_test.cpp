@@ -17,6 +17,7 @@
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/endless_rows.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map {
 namespace {
@@ -64,12 +65,7 @@ std::vector<std::string> successors(const RoadMap& road_map, const std::string& 
 }
 
 std::string refusal(const std::string& bytes, const std::string& mapping) {
-  try {
-    read(bytes, mapping);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return tests::refusal_of([&] { read(bytes, mapping); });
 }
 
 TEST(LaneTable, ExampleHasWidthsTypesLimitsLinksAndNeighbours) {

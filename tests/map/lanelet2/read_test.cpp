@@ -5,10 +5,10 @@
 #include <cmath>
 #include <random>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/lanelet2/document.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/made_lanelet2.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map {
 namespace {
@@ -375,12 +375,7 @@ TEST(Lanelet2, FaultyElementsCostOnlyThemselves) {
 }
 
 std::string refusal(const std::string& bytes) {
-  try {
-    parse_map(bytes, "made.osm");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "was read";
+  return tests::refusal_of([&] { parse_map(bytes, "made.osm"); });
 }
 
 TEST(Lanelet2, FilesWithoutUsableLaneletsAreRefused) {

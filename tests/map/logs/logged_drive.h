@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/logs/log.h"
 #include "roadbed/map/logs/log_drive.h"
 #include "roadbed/tests/support/made_log.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 // The drive in a log, given as its bytes or as what was recorded.
 namespace roadbed::map {
@@ -23,15 +23,10 @@ inline LogDrive drive_in(const std::vector<tests::Recorded>& log, const std::str
   return drive_of_log(tests::through(log, kStart_ns), "a log", topic);
 }
 
-// Why there is none; empty if there is one.
+// Why there is none; "accepted" if there is one.
 template <class Log>
 std::string fault_of(const Log& log, const std::string& topic = {}) {
-  try {
-    drive_in(log, topic);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return tests::refusal_of([&] { drive_in(log, topic); });
 }
 
 }  // namespace roadbed::map

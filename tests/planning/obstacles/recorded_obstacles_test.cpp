@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "roadbed/map/commonroad/scenario.h"
-#include "roadbed/map/files/input_error.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::planning {
 namespace {
@@ -28,12 +28,7 @@ std::vector<ObstacleInSource> boxes_of(const std::string& elements) {
 }
 
 std::string refusal_of(const std::string& elements) {
-  try {
-    boxes_of(elements);
-  } catch (const map::InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return tests::refusal_of([&] { boxes_of(elements); });
 }
 
 const std::string kShape =

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/tests/support/made_maps.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::tools {
 namespace {
@@ -22,12 +22,7 @@ map::RoadMap two_lane_road() {
 }
 
 std::string fault_of(const map::RoadMap& road_map, const std::string& text) {
-  try {
-    find_place(road_map, text);
-  } catch (const map::InputError& error) {
-    return error.what();
-  }
-  return "";
+  return tests::refusal_of([&] { find_place(road_map, text); });
 }
 
 TEST(FindPlace, TakesTheLaneThatAPointOfTheSourceIsOn) {
@@ -70,12 +65,7 @@ TEST(FindPlace, OfNumbersIsThatOfTheirText) {
 TEST(FindPlace, RefusesNumbersAsItRefusesText) {
   const map::RoadMap road_map = two_lane_road();
   const auto fault = [&](const PointPlace& point) -> std::string {
-    try {
-      find_place(road_map, point);
-    } catch (const map::InputError& error) {
-      return error.what();
-    }
-    return "";
+    return tests::refusal_of([&] { find_place(road_map, point); });
   };
   EXPECT_EQ(fault({{500020.0, 4000050.0}, {}}), fault_of(road_map, "500020,4000050"));
   EXPECT_THAT(fault({{500020.0, NAN}, {}}), HasSubstr("not a number"));

@@ -11,6 +11,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/simulation/drive.h"
 
@@ -33,12 +34,7 @@ CommonRoadDrive problem_of(const std::string& bytes) {
 }
 
 std::string refusal_of(const std::string& bytes) {
-  try {
-    problem_of(bytes);
-  } catch (const map::InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return tests::refusal_of([&] { problem_of(bytes); });
 }
 
 /// A road eastwards that ends at `end_x_m`, the ego's centre in its middle at x = 5 m at a speed,

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/outside_planner.h"
 
@@ -34,12 +34,7 @@ planning::PilotSetup setup() {
 }
 
 std::string fault_of(const std::string& line) {
-  try {
-    parse_pilot_view(*town(), line, "line 1");
-  } catch (const map::InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return tests::refusal_of([&] { parse_pilot_view(*town(), line, "line 1"); });
 }
 
 constexpr const char* kEgo =

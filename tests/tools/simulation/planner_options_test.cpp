@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 #include "roadbed/tests/support/straight_world.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/simulation/drive.h"
@@ -39,12 +39,7 @@ TEST(PlannerOptions, StandInPlaceOfTheStyleAndTheStyleOfTheScenario) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    changes_of(text);
-  } catch (const map::InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return tests::refusal_of([&] { changes_of(text); });
 }
 
 TEST(PlannerOptions, RefuseWhatIsUnknownOrOutOfRangeAndNameThePlace) {

@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/log_bytes.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/world.h"
 
@@ -62,12 +62,7 @@ class RecordedOther : public testing::Test {
   }
 
   std::string refusal(const json& recorded) const {
-    try {
-      other(recorded);
-    } catch (const map::InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return tests::refusal_of([&] { other(recorded); });
   }
 
   // The centre is half of its length, less the overhang, ahead of the rear axle.

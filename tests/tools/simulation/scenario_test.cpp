@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "roadbed/map/files/input_error.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::tools {
 namespace {
@@ -33,12 +33,7 @@ json full() {
 Scenario parsed(const json& document) { return parse_scenario(document.dump(), "maps/test.json"); }
 
 std::string message_of(const std::string& text) {
-  try {
-    parse_scenario(text, "test.json");
-  } catch (const map::InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return tests::refusal_of([&] { parse_scenario(text, "test.json"); });
 }
 
 /// What the reader says when one value of the full scenario is replaced.

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map {
 namespace {
@@ -17,12 +18,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string refusal(const std::string& bytes, const std::string& name) {
-  try {
-    parse_point_cloud(bytes, name);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return tests::refusal_of([&] { parse_point_cloud(bytes, name); });
 }
 
 template <typename Number>

@@ -1,11 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/occupancy/clouds/point_cloud.h"
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map {
 namespace {
@@ -123,12 +123,7 @@ TEST(RealOctrees, HaveTheNodesOfTheirHeaders) {
 TEST(RealFiles, ThatAreNoCloudsAreRefusedWithAReason) {
   ROADBED_REAL_DATA_OR_SKIP(folder);
   const auto refusal = [&](const char* file) -> std::string {
-    try {
-      read_point_cloud(folder / "occupancy" / file);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return tests::refusal_of([&] { read_point_cloud(folder / "occupancy" / file); });
   };
   EXPECT_THAT(refusal("OctoMap+octomap/spherical_scan.graph"),
               testing::HasSubstr("no known point cloud format"));

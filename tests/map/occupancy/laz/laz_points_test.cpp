@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/laz/point_steps.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map {
 namespace {
@@ -47,12 +47,7 @@ void expect_formula(const PointCloud& cloud) {
 }
 
 std::string refusal(const std::string& bytes) {
-  try {
-    parse_point_cloud(bytes, "a.laz");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return tests::refusal_of([&] { parse_point_cloud(bytes, "a.laz"); });
 }
 
 class LazFormats : public testing::TestWithParam<int> {};

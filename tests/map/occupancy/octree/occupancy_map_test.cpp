@@ -8,6 +8,7 @@
 #include <random>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map {
 namespace {
@@ -22,12 +23,7 @@ PointCloud cloud_of(std::vector<Eigen::Vector3f> points) {
 }
 
 std::string refusal(const std::string& bytes) {
-  try {
-    OccupancyMap::parse(bytes, "a.bt");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return tests::refusal_of([&] { OccupancyMap::parse(bytes, "a.bt"); });
 }
 
 std::string bt(const std::string& size, const std::string& data) {
