@@ -58,9 +58,8 @@ struct EndPoints {
   std::vector<double> places_m(const EndLine& line) const {
     std::vector<double> off_m = offsets_m(line);
     std::ranges::sort(off_m);
-    const auto same =
-        std::ranges::unique(off_m, [](double a, double b) { return b - a < kSamePlace_m; });
-    off_m.erase(same.begin(), same.end());
+    const auto is_same = [](double a, double b) { return b - a < kSamePlace_m; };
+    off_m.erase(std::unique(off_m.begin(), off_m.end(), is_same), off_m.end());
     return off_m;
   }
 
