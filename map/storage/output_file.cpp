@@ -98,11 +98,15 @@ void OutputFile::write(std::uint64_t offset, std::string_view bytes) {
   if (fills_a_piece) ::sync_file_range(descriptor_, 0, 0, SYNC_FILE_RANGE_WRITE);
 }
 
+void OutputFile::sync() {
+  if (::fsync(descriptor_) != 0) refuse_write(place_.path);
+}
+
 void OutputFile::commit() {
   place_.there = look_at_file(place_.path).there;
   if (place_.there && !force_) refuse_existing(place_.path);
   if (place_.there) keep_permissions(descriptor_, *place_.there, place_.path);
-  if (::fsync(descriptor_) != 0) refuse_write(place_.path);
+  sync();
   if (place_.there || !put_at_free_name()) replace();
   hidden_.clear();
   sync_folder(folder_around(place_.path));
@@ -148,7 +152,7 @@ void write_output(const std::filesystem::path& file, std::string_view bytes, boo
   output.commit();
 }
 
-void OutputFiles::add(const std::filesystem::path& file, std::string bytes) {
+void OutputFiles::add(const std::filesystem::path& file, std::string_view bytes) {
   if (is_standard_stream(file)) {
     to_standard_output_ += bytes;
     return;
@@ -158,6 +162,7 @@ void OutputFiles::add(const std::filesystem::path& file, std::string bytes) {
 }
 
 void OutputFiles::commit() {
+  for (const auto& file : files_) file->sync();
   for (const auto& file : files_) file->commit();
   if (!to_standard_output_.empty()) write_to_standard_output(to_standard_output_);
 }

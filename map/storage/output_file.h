@@ -32,7 +32,11 @@ class OutputFile : public ByteSink {
   /// @throws OutputError if it cannot be written.
   void write(std::uint64_t offset, std::string_view bytes) override;
 
-  /// Puts the new file in place.
+  /// Waits until what was written is on the disk, which a full one says at the latest here.
+  /// @throws OutputError if it cannot be written.
+  void sync();
+
+  /// Puts the new file in place, synced.
   /// @throws OutputError if it cannot be written, or without `force` if there is a file by now.
   void commit();
 
@@ -55,15 +59,15 @@ void write_to_standard_output(std::string_view bytes);
 /// @throws OutputError if it cannot be written; nothing is left behind then.
 void write_output(const std::filesystem::path& file, std::string_view bytes, bool force);
 
-/// Files of one answer: all are written before the first is put in place, so that a disk that is
-/// full leaves none.
+/// Files of one answer: all are on the disk before the first is put in place, so that a disk that
+/// is full leaves none.
 class OutputFiles {
  public:
   explicit OutputFiles(bool force) : force_(force) {}
 
   /// @param file  `-` is standard output, in its turn at the commit.
   /// @throws OutputError if it cannot be written.
-  void add(const std::filesystem::path& file, std::string bytes);
+  void add(const std::filesystem::path& file, std::string_view bytes);
 
   /// @throws OutputError as OutputFile does.
   void commit();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "roadbed/geometry/motion/rectangle.h"
@@ -62,9 +63,10 @@ MovingProbe::MovingProbe(const geometry::Trajectory& drive, const geometry::Body
     const double radius_m = 0.5 * std::hypot(from.length_m, from.width_m);
     movers_.push_back({&from, radius_m, ways_m(from.motion, radius_m)});
   }
-  for (std::size_t segment = 0; segment < segments(); ++segment) {
-    near_.push_back(near_segment(segment));
-  }
+  std::vector<std::size_t> all(movers_.size());
+  std::iota(all.begin(), all.end(), 0);
+  near_.resize(segments());
+  find_near({.segment = 0, .segments = segments()}, all);
 }
 
 // An obstacle that appears where a segment ends counts from the next one on; the ends of the drive
@@ -88,24 +90,51 @@ double MovingProbe::way_until_m(const Mover& mover, double t_s) {
   return mover.way_m[i - 1] + fraction * (mover.way_m[i] - mover.way_m[i - 1]);
 }
 
+// Of the circles around the body and the obstacle in the middle of the span.
+double MovingProbe::apart_m(const Mover& mover, const Span& span) const {
+  const geometry::TrajectoryPoint middle = middle_of(span);
+  const Eigen::Vector2d centre = part_.core_at(middle.pose()).centre;
+  const Eigen::Vector2d place = mover.from->motion.at(middle.t_s).pose().position();
+  return (place - centre).norm() - body_radius_m_ - mover.radius_m;
+}
+
 // Between two times the distance of two bodies changes by at most what both move. An obstacle that
 // is farther than that in the middle of a segment stays beyond the horizon all along it.
-std::vector<std::size_t> MovingProbe::near_segment(std::size_t segment) const {
+bool MovingProbe::is_near(const Mover& mover, std::size_t segment) const {
+  if (!is_there(mover, segment)) return false;
   const Span whole{segment, 0.0, 1.0};
-  const geometry::TrajectoryPoint middle = middle_of(whole);
-  const Eigen::Vector2d centre = part_.core_at(middle.pose()).centre;
-  const double start_s = state_at(segment, 0.0).t_s, end_s = state_at(segment, 1.0).t_s;
+  const double moved_m = ClearanceProbe::motion_bound_m(whole) +
+                         way_until_m(mover, state_at(segment, 1.0).t_s) -
+                         way_until_m(mover, state_at(segment, 0.0).t_s);
+  return apart_m(mover, whole) - moved_m < horizon_m_;
+}
+
+// False only where it is near none of the segments. Both move by no more than once these bounds up
+// to the middle of a segment, and within it by no more than once more.
+bool MovingProbe::may_be_near(const Mover& mover, const Span& span) const {
+  constexpr double kRoundingM = 1e-6;
+  const double start_s = state_at(span.segment, 0.0).t_s;
+  const double end_s = state_at(span.segment + span.segments - 1, 1.0).t_s;
+  const TimeSpan& there = mover.from->validity;
+  if (there.from_s > end_s || there.to_s < start_s) return false;
+  const double moved_m = ClearanceProbe::motion_bound_m(span) + way_until_m(mover, end_s) -
+                         way_until_m(mover, start_s);
+  return apart_m(mover, span) - 2.0 * moved_m - kRoundingM < horizon_m_;
+}
+
+void MovingProbe::find_near(const Span& span, const std::vector<std::size_t>& candidates) {
   std::vector<std::size_t> near;
-  for (std::size_t i = 0; i < movers_.size(); ++i) {
-    const Mover& mover = movers_[i];
-    if (!is_there(mover, segment)) continue;
-    const auto place = mover.from->motion.at(middle.t_s).pose().position();
-    const double moved_m = ClearanceProbe::motion_bound_m(whole) + way_until_m(mover, end_s) -
-                           way_until_m(mover, start_s);
-    const double away_m = (place - centre).norm() - body_radius_m_ - mover.radius_m - moved_m;
-    if (away_m < horizon_m_) near.push_back(i);
+  for (const std::size_t i : candidates) {
+    const bool is_kept =
+        span.segments == 1 ? is_near(movers_[i], span.segment) : may_be_near(movers_[i], span);
+    if (is_kept) near.push_back(i);
   }
-  return near;
+  if (span.segments == 1) {
+    near_[span.segment] = std::move(near);
+  } else if (!near.empty()) {
+    find_near(span.first_half(), near);
+    find_near(span.second_half(), near);
+  }
 }
 
 double MovingProbe::motion_bound_m(const Span& span) const {

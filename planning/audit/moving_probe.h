@@ -24,6 +24,7 @@ geometry::Trajectory with_samples_at_changes(const geometry::Trajectory& drive,
 /// linear between their samples, at rest before the first and after the last.
 class MovingProbe : public ClearanceProbe {
  public:
+  /// O((obstacles + near ones of all segments) · log(segments)).
   /// @param drive  of `with_samples_at_changes`.
   MovingProbe(const geometry::Trajectory& drive, const geometry::BodyPart& part,
               std::span<const ObstacleInSource> obstacles, double horizon_m);
@@ -45,7 +46,10 @@ class MovingProbe : public ClearanceProbe {
 
   bool is_there(const Mover& mover, std::size_t segment) const;
   static double way_until_m(const Mover& mover, double t_s);
-  std::vector<std::size_t> near_segment(std::size_t segment) const;
+  double apart_m(const Mover& mover, const Span& span) const;
+  bool may_be_near(const Mover& mover, const Span& span) const;
+  bool is_near(const Mover& mover, std::size_t segment) const;
+  void find_near(const Span& span, const std::vector<std::size_t>& candidates);
 
   geometry::BodyPart part_;
   double horizon_m_, body_radius_m_;

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/tests/support/file_size_limit.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
-#include "roadbed/tests/tools/batch/batch_runs.h"
 #include "roadbed/tests/tools/town.h"
 
 namespace roadbed::tests {

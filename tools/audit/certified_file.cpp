@@ -17,6 +17,10 @@ CertifiedFile certified_file(const std::filesystem::path& file) {
           .sha256 = map::sha256_of_file(is_tiled ? map::tiles_index_file(file) : file)};
 }
 
+CertifiedFile certified_bytes(const std::filesystem::path& file, std::string_view bytes) {
+  return {.name = file.string(), .sha256 = map::sha256_of_bytes(bytes)};
+}
+
 CertifiedFile hashed_input(const std::filesystem::path& file) {
   if (!map::is_stream(file)) return certified_file(file);
   return {.name = map::input_name(file), .sha256 = map::stream_sha256(file)};

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "roadbed/planning/obstacles/obstacle.h"
@@ -18,6 +19,9 @@ struct CertifiedFile {
 /// that is named (vehicle_file.h) that of its measures.
 /// @throws InputError for a stream, which nobody can hash again, and as map::read_file does.
 CertifiedFile certified_file(const std::filesystem::path& file);
+
+/// The same of a file that these bytes are about to become.
+CertifiedFile certified_bytes(const std::filesystem::path& file, std::string_view bytes);
 
 /// The same for what is only shown: of a stream, too, the hash of what it gave.
 CertifiedFile hashed_input(const std::filesystem::path& file);

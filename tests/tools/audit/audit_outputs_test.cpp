@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/tests/support/file_size_limit.h"
 #include "roadbed/tests/tools/audit/audit_command_fixture.h"
 
 namespace roadbed::tests {
@@ -37,6 +38,17 @@ TEST_F(AuditCommand, WritesStretchesConflictsAndWitnessesAsGeoJson) {
     EXPECT_NEAR(ring.at(0).at(1).get<double>(), 1.0, 1e-6);
   }
   EXPECT_THAT(kinds, testing::ElementsAre("stretch", "stretch", "stretch", "conflict", "witness"));
+}
+
+TEST_F(AuditCommand, WritesNoneOfItsFilesWhereOneDoesNotFit) {
+  const std::string page = folder_ / "audit.html", saved = folder_ / "saved.csv";
+  const std::vector<std::string> before = files_below(folder_.path());
+  const FileSizeLimit limit(20'000);  // the page is larger, the drive is not
+  const ProgramRun run =
+      audit({"--trajectory", folder_ / "drives/hit.csv", "--save-drive", saved, "--report", page});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_THAT(run.err, HasSubstr("audit.html: cannot be written: File too large"));
+  EXPECT_EQ(files_below(folder_.path()), before);
 }
 
 TEST_F(AuditCommand, WritesAPageThatPlaysTheAudit) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/tests/support/file_size_limit.h"
 #include "roadbed/tests/tools/batch/batch_runs.h"
 
 namespace roadbed::tests {

@@ -6,7 +6,6 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
-#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/commands/audits/audit_frames.h"
 #include "roadbed/tools/commands/audits/audit_output.h"
@@ -167,18 +166,34 @@ void AuditOutputs::check_for_folder() const {
 
 void AuditOutputs::write_one(const AuditedDrive& audited, const AuditScene& scene) const {
   if (certifies() && !audited.has_occupancy) refuse_certificate_of_gaps(audited);
-  write_saved(audited, scene);
-  write_picture(audited, scene);
-  write_report(audited, scene);
-  write_log(audited, scene);
-  write_certificate(audited, scene);
-  write_lists({audited}, scene);
+  map::OutputFiles files(force_);
+  const Saved saved = add_saved(audited, scene, files);
+  if (!svg_.empty()) files.add(svg_, picture(audited, scene));
+  if (!report_.empty()) files.add(report_, drive_report_html(page_of(audited, scene)));
+  if (!mcap_.empty()) {
+    files.add(mcap_, drive_mcap(page_of(audited, scene), space_of(audited, scene)));
+  }
+  if (certifies()) files.add(certificate_, certificate(audited, scene, saved));
+  add_lists({audited}, scene, files);
+  files.commit();
 }
 
-void AuditOutputs::write_saved(const AuditedDrive& audited, const AuditScene& scene) const {
-  if (saves_drive()) {
-    map::write_output(saved_drive_, write_trajectory_csv(audited.drive), force_);
-  }
+void AuditOutputs::write_all(const std::vector<AuditedDrive>& audits,
+                             const AuditScene& scene) const {
+  map::OutputFiles files(force_);
+  if (!report_.empty()) files.add(report_, index(audits, scene));
+  add_lists(audits, scene, files);
+  files.commit();
+}
+
+AuditOutputs::Saved AuditOutputs::add_saved(const AuditedDrive& audited, const AuditScene& scene,
+                                            map::OutputFiles& files) const {
+  Saved saved;
+  const auto add = [&](const std::filesystem::path& file, const std::string& bytes) {
+    files.add(file, bytes);
+    return certifies() ? certified_bytes(file, bytes) : CertifiedFile{};
+  };
+  if (saves_drive()) saved.drive = add(saved_drive_, write_trajectory_csv(audited.drive));
   if (saves_occupancy()) {
     const auto* octree = dynamic_cast<const map::OccupancyMap*>(scene.occupancy.get());
     if (octree == nullptr) {
@@ -187,44 +202,23 @@ void AuditOutputs::write_saved(const AuditedDrive& audited, const AuditScene& sc
                              .needed = "one octree for --save-occupancy",
                              .remedy = "leave that out"});
     }
-    map::write_output(saved_occupancy_, octree->to_bt(), force_);
+    saved.occupancy = add(saved_occupancy_, octree->to_bt());
   }
   if (saves_obstacles()) {
-    map::write_output(saved_obstacles_, write_obstacles_csv(scene.question.moving_in_source),
-                      force_);
+    files.add(saved_obstacles_, write_obstacles_csv(scene.question.moving_in_source));
   }
+  return saved;
 }
 
-void AuditOutputs::write_all(const std::vector<AuditedDrive>& audits,
-                             const AuditScene& scene) const {
-  write_index(audits, scene);
-  write_lists(audits, scene);
-}
-
-void AuditOutputs::write_picture(const AuditedDrive& audited, const AuditScene& scene) const {
-  if (svg_.empty()) return;
+std::string AuditOutputs::picture(const AuditedDrive& audited, const AuditScene& scene) const {
   const planning::AuditReport whole = audited.whole();
-  map::write_output(
-      svg_,
-      audit_svg({audited.drive, scene.question.inflated_parts(), whole,
-                 boxes_in(drawn(audited, scene), audited, scene), drawn_ground(audited, scene),
-                 scene.question.moving_in_source, !scene.occupancy}),
-      force_);
+  return audit_svg({audited.drive, scene.question.inflated_parts(), whole,
+                    boxes_in(drawn(audited, scene), audited, scene), drawn_ground(audited, scene),
+                    scene.question.moving_in_source, !scene.occupancy});
 }
 
-void AuditOutputs::write_report(const AuditedDrive& audited, const AuditScene& scene) const {
-  if (report_.empty()) return;
-  map::write_output(report_, drive_report_html(page_of(audited, scene)), force_);
-}
-
-void AuditOutputs::write_log(const AuditedDrive& audited, const AuditScene& scene) const {
-  if (mcap_.empty()) return;
-  map::write_output(mcap_, drive_mcap(page_of(audited, scene), space_of(audited, scene)), force_);
-}
-
-void AuditOutputs::write_index(const std::vector<AuditedDrive>& audits,
-                               const AuditScene& scene) const {
-  if (report_.empty()) return;
+std::string AuditOutputs::index(const std::vector<AuditedDrive>& audits,
+                                const AuditScene& scene) const {
   const std::vector<geometry::BodyPart> parts = scene.question.inflated_parts();
   std::vector<IndexedAudit> index;
   for (const AuditedDrive& audited : audits) {
@@ -235,42 +229,39 @@ void AuditOutputs::write_index(const std::vector<AuditedDrive>& audits,
     index.back().pictures = close_ups(
         audited.whole(), {audited.drive, parts, occupied, lanes, scene.question.moving_in_source});
   }
-  map::write_output(report_, audit_index_html(index, scene.asked.suite(), name_and_version()),
-                    force_);
+  return audit_index_html(index, scene.asked.suite(), name_and_version());
 }
 
-void AuditOutputs::write_certificate(const AuditedDrive& audited, const AuditScene& scene) const {
-  if (certificate_.empty()) return;
-  const std::filesystem::path& drive = saved_drive_.empty() ? scene.drive_file : saved_drive_;
+std::string AuditOutputs::certificate(const AuditedDrive& audited, const AuditScene& scene,
+                                      const Saved& saved) const {
+  const AuditAsked& asked = scene.asked;
   CertificateFile file{.program = name_and_version(),
-                       .trajectory = certified_file(drive),
-                       .underside_m = scene.asked.from_height_m(),
+                       .trajectory = saved.drive ? *saved.drive : certified_file(scene.drive_file),
+                       .underside_m = asked.from_height_m(),
                        .ground = {scene.question.ground.kind, audited.audit.ground},
-                       .least_measured = scene.asked.options().least_measured,
+                       .least_measured = asked.options().least_measured,
                        .parts = audited.audit.certificates};
-  if (saves_occupancy()) {
-    file.occupancy = certified_file(saved_occupancy_);
+  if (saved.occupancy) {
+    file.occupancy = saved.occupancy;
   } else if (scene.occupancy) {
-    file.occupancy = hashed_once(scene, scene.asked.occupancy_file());
+    file.occupancy = hashed_once(scene, asked.occupancy_file());
   }
-  const auto& obstacles = saves_obstacles() ? saved_obstacles_ : scene.asked.obstacles_file();
+  const auto& obstacles = saves_obstacles() ? saved_obstacles_ : asked.obstacles_file();
   const bool has_obstacles = !obstacles.empty() && !scene.question.moving_in_source.empty();
   if (has_obstacles && scene.occupancy) {
     file.obstacles = certified_obstacles(obstacles, scene.question.moving_in_source);
   }
-  if (!scene.asked.vehicle_file().empty())
-    file.vehicle = certified_file(scene.asked.vehicle_file());
-  if (!scene.asked.map_file().empty()) file.roads = hashed_once(scene, scene.asked.map_file());
-  if (audited.road)
-    file.surface = certified_surface(*audited.road, scene.asked.options().inflate_m);
-  map::write_output(certificate_, write_certificate_json(file), force_);
+  if (!asked.vehicle_file().empty()) file.vehicle = certified_file(asked.vehicle_file());
+  if (!asked.map_file().empty()) file.roads = hashed_once(scene, asked.map_file());
+  if (audited.road) file.surface = certified_surface(*audited.road, asked.options().inflate_m);
+  return write_certificate_json(file);
 }
 
-void AuditOutputs::write_lists(const std::vector<AuditedDrive>& audits,
-                               const AuditScene& scene) const {
-  if (!junit_.empty()) map::write_output(junit_, audits_junit(audits, scene.asked.suite()), force_);
+void AuditOutputs::add_lists(const std::vector<AuditedDrive>& audits, const AuditScene& scene,
+                             map::OutputFiles& files) const {
+  if (!junit_.empty()) files.add(junit_, audits_junit(audits, scene.asked.suite()));
   if (!geojson_.empty()) {
-    map::write_output(geojson_, audits_geojson(audits, scene.question, scene.crs()), force_);
+    files.add(geojson_, audits_geojson(audits, scene.question, scene.crs()));
   }
 }
 

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/audited_drive.h"
+#include "roadbed/tools/audit/certified_file.h"
 #include "roadbed/tools/cli/arguments.h"
 #include "roadbed/tools/commands/audits/audit_asked.h"
 #include "roadbed/tools/commands/audits/audit_scene.h"
@@ -34,17 +38,26 @@ class AuditOutputs {
   /// @throws InputError if an output is about one drive.
   void check_for_folder() const;
 
+  /// All that was asked for of one drive, or nothing.
+  /// @throws InputError, OutputError
   void write_one(const AuditedDrive& audited, const AuditScene& scene) const;
+  /// The same of a folder's.
   void write_all(const std::vector<AuditedDrive>& audits, const AuditScene& scene) const;
 
  private:
-  void write_saved(const AuditedDrive& audited, const AuditScene& scene) const;
-  void write_picture(const AuditedDrive& audited, const AuditScene& scene) const;
-  void write_report(const AuditedDrive& audited, const AuditScene& scene) const;
-  void write_log(const AuditedDrive& audited, const AuditScene& scene) const;
-  void write_index(const std::vector<AuditedDrive>& audits, const AuditScene& scene) const;
-  void write_certificate(const AuditedDrive& audited, const AuditScene& scene) const;
-  void write_lists(const std::vector<AuditedDrive>& audits, const AuditScene& scene) const;
+  // Inputs of the audit that are outputs, too; none where they are not asked for.
+  struct Saved {
+    std::optional<CertifiedFile> drive, occupancy;
+  };
+
+  Saved add_saved(const AuditedDrive& audited, const AuditScene& scene,
+                  map::OutputFiles& files) const;
+  std::string picture(const AuditedDrive& audited, const AuditScene& scene) const;
+  std::string index(const std::vector<AuditedDrive>& audits, const AuditScene& scene) const;
+  std::string certificate(const AuditedDrive& audited, const AuditScene& scene,
+                          const Saved& saved) const;
+  void add_lists(const std::vector<AuditedDrive>& audits, const AuditScene& scene,
+                 map::OutputFiles& files) const;
 
   std::filesystem::path svg_, report_, mcap_, certificate_, junit_, geojson_, saved_drive_,
       saved_occupancy_, saved_obstacles_;

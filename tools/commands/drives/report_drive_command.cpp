@@ -73,10 +73,11 @@ class ReportDriveCommand : public Command {
     if (is_asked(scene)) report = audited.whole();
     ReportInput page = report_of_recording(audited.drive, report, surroundings_of(audited, scene));
     page.title = map::one_line(drive_.filename().string());
-    map::write_output(output_, drive_report_html(page), force_);
-    if (mcap_.empty()) return;
+    map::OutputFiles files(force_);
+    files.add(output_, drive_report_html(page));
     page.drive.trajectory = audited.drive;  // as it was recorded, to be read again
-    map::write_output(mcap_, drive_mcap(page, space_of(audited, scene)), force_);
+    if (!mcap_.empty()) files.add(mcap_, drive_mcap(page, space_of(audited, scene)));
+    files.commit();
   }
 
   std::filesystem::path drive_, output_, mcap_;

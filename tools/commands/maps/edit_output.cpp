@@ -42,10 +42,14 @@ std::string EditOutput::fault() const {
 void EditOutput::check() const { map::check_writable(file_, force_); }
 
 Exit EditOutput::finish(const map::Edited& edited, const std::string& kind, const Streams& streams,
-                        const CommonOptions& common, const Json& more) const {
+                        const CommonOptions& common, const Json& more,
+                        const std::map<std::filesystem::path, std::string>& beside) const {
   const bool made = !edited.bytes.empty();
   if (made) refuse_other_format(file_, edited.bytes);
-  if (made) map::write_output(file_, edited.bytes, force_);
+  map::OutputFiles files(force_);
+  if (made) files.add(file_, edited.bytes);
+  for (const auto& [file, bytes] : beside) files.add(file, bytes);
+  files.commit();
   if (json_) {
     Json counts = Json::object();
     for (const auto& [what, many] : edited.counts) counts[what] = many;

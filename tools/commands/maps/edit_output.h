@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "roadbed/map/edit/edited.h"
@@ -28,8 +29,10 @@ class EditOutput {
   /// Writes the map, or says why there is none, and prints what was done.
   /// @param kind  of the JSON document: "map_clip".
   /// @param more  goes into it, too.
+  /// @param beside  files that are put in place with the map, by their names.
   Exit finish(const map::Edited& edited, const std::string& kind, const Streams& streams,
-              const CommonOptions& common, const Json& more = Json::object()) const;
+              const CommonOptions& common, const Json& more = Json::object(),
+              const std::map<std::filesystem::path, std::string>& beside = {}) const;
 
   const std::filesystem::path& file() const { return file_; }
   bool force() const { return force_; }

@@ -79,12 +79,11 @@ class MergeCommand : public Command {
     for (const auto& file : inputs_)
       inputs.push_back({map::read_file(file), map::input_name(file)});
     const map::Merged merged = map::merge(std::move(inputs), options_);
+    std::map<std::filesystem::path, std::string> beside;
+    if (!renamed_file_.empty()) beside[renamed_file_] = renamed_csv(merged.renamed);
     const Exit exit = output_.finish(
         merged, "map_merge", streams, common,
-        {{"renamed", renamed_json(merged.renamed)}, {"seams", seams_json(merged.seams)}});
-    if (!renamed_file_.empty()) {
-      map::write_output(renamed_file_, renamed_csv(merged.renamed), output_.force());
-    }
+        {{"renamed", renamed_json(merged.renamed)}, {"seams", seams_json(merged.seams)}}, beside);
     if (!output_.prints_json() && !common.quiet) say(streams, merged);
     return exit;
   }

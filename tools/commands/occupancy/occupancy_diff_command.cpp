@@ -58,8 +58,10 @@ class OccupancyDiffCommand : public Command {
     const map::OccupancyMap before = octree_in(before_), now = octree_in(now_);
     const map::OccupancyChanges changes =
         map::changes_between(before, map::input_name(before_), now, map::input_name(now_));
-    write(appeared_, changes.appeared);
-    write(vanished_, changes.vanished);
+    map::OutputFiles files(force_);
+    if (!appeared_.empty()) files.add(appeared_, points_in(appeared_, changes.appeared));
+    if (!vanished_.empty()) files.add(vanished_, points_in(vanished_, changes.vanished));
+    files.commit();
     if (json_) {
       const Json document = {{"resolution_m", now.resolution_m()},
                              {"appeared_cells", changes.appeared.size()},
@@ -86,13 +88,9 @@ class OccupancyDiffCommand : public Command {
                                     map::input_name(path));
   }
 
-  void write(const std::filesystem::path& output,
-             const std::vector<Eigen::Vector3d>& points) const {
-    if (output.empty()) return;
-    map::write_output(
-        output,
-        output.extension() == ".pcd" ? map::points_as_pcd(points) : map::points_as_ply(points),
-        force_);
+  static std::string points_in(const std::filesystem::path& output,
+                               const std::vector<Eigen::Vector3d>& points) {
+    return output.extension() == ".pcd" ? map::points_as_pcd(points) : map::points_as_ply(points);
   }
 
   std::filesystem::path before_, now_, appeared_, vanished_;

@@ -179,13 +179,13 @@ class OccupancyExportCommand : public Command {
   std::string write_grid(const map::OccupancySource& occupancy) const {
     std::filesystem::path yaml = output_;
     yaml.replace_extension(".yaml");
-    map::OutputFile image_file(output_, force_), yaml_file(yaml, force_);
+    for (const auto& file : {output_, yaml}) map::check_writable(file, force_);
     const map::OccupancyGrid grid =
         map::grid_from_above(occupancy, heights(), map::input_name(input_));
-    image_file.write(0, map::grid_as_pgm(grid));
-    yaml_file.write(0, map::grid_yaml(grid, output_.filename().string()));
-    image_file.commit();
-    yaml_file.commit();
+    map::OutputFiles files(force_);
+    files.add(output_, map::grid_as_pgm(grid));
+    files.add(yaml, map::grid_yaml(grid, output_.filename().string()));
+    files.commit();
     return fmt::format("{} by {} squares of {} m; and {}", grid.columns, grid.rows,
                        grid.resolution_m, yaml.filename().string());
   }
