@@ -132,16 +132,32 @@ Validation findings_of_both(JudgedFile judged, const validation::ValidateOptions
   return validation;
 }
 
+Validation of_map_alone(RoadMap road_map, const validation::ValidateOptions& options) {
+  JudgedFile alone;
+  alone.road_map = std::move(road_map);
+  return findings_of_both(std::move(alone), options);
+}
+
+bool has_rules_of_text(const std::string& map_format) {
+  return std::ranges::any_of(formats(), [&](const Format& format) {
+    return format.judge != nullptr && map_format.starts_with(format.name);
+  });
+}
+
 /// A compiled map with the findings about its source's text. The reader's remarks are those of the
 /// text, which leaves out what rules say.
 Validation validate_compiled(const fs::path& file, const fs::path& named,
                              const validation::ValidateOptions& options) {
   RoadMap road_map = open_compiled_map(file);
+  if (!has_rules_of_text(road_map.format())) {
+    if (named.empty()) return of_map_alone(std::move(road_map), options);
+    throw InputError({.file = input_name(named),
+                      .found = "is of " + road_map.format() + ", whose text no rule looks at",
+                      .remedy = "leave out --source"});
+  }
   std::optional<JudgedFile> source = judge_source(file, named, options);
   if (!source || !source->road_map) {
-    JudgedFile alone;
-    alone.road_map = std::move(road_map);
-    Validation validation = findings_of_both(std::move(alone), options);
+    Validation validation = of_map_alone(std::move(road_map), options);
     validation.note = fmt::format(
         "what {} was made from is not beside it: no line numbers, and no rules about its text; "
         "name it with --source",

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
+#include <functional>
 #include <iostream>
 #include <iterator>
 #include <memory>
@@ -73,14 +74,24 @@ struct Registered {
   std::unique_ptr<Command> command;
 };
 
-Exit run_guarded(Command& command, const CommonOptions& common) {
+Exit guarded(const std::function<Exit()>& run) {
   try {
-    return command.run({std::cout, std::cerr}, common);
+    return run();
   } catch (const std::exception& error) {
     const Failure failure = failure_of(error);
     fmt::print(std::cerr, "roadbed: {}\n", failure.text);
     return failure.exit;
   }
+}
+
+Exit run_registered(const Registered& registered, CommonOptions& common) {
+  common.input_files = registered.arguments.input_files();
+  const std::string fault = registered.arguments.output_fault(common.input_files);
+  if (!fault.empty()) {
+    fmt::print(std::cerr, "roadbed: {}\n", fault);
+    return Exit::usage;
+  }
+  return registered.command->run({std::cout, std::cerr}, common);
 }
 
 // The first line tells programs apart that may come to different results.
@@ -119,24 +130,17 @@ int run_command_line(int argc, char** argv) {
   for (const Entry& entry : entries) declare(entry.name, entry.make());
   if (entries.size() > 1) declare("help", make_help_command(program));
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const int status = app.exit(error);
-    return status == 0 ? 0 : static_cast<int>(Exit::usage);
-  }
-  for (const Registered& registered : commands) {
-    if (registered.arguments.given()) {
-      common.input_files = registered.arguments.input_files();
-      const std::string fault = registered.arguments.output_fault(common.input_files);
-      if (!fault.empty()) {
-        fmt::print(std::cerr, "roadbed: {}\n", fault);
-        return static_cast<int>(Exit::usage);
-      }
-      return static_cast<int>(run_guarded(*registered.command, common));
+  return static_cast<int>(guarded([&] {
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app.exit(error) == 0 ? Exit::ok : Exit::usage;
     }
-  }
-  return static_cast<int>(Exit::usage);
+    for (const Registered& registered : commands) {
+      if (registered.arguments.given()) return run_registered(registered, common);
+    }
+    return Exit::usage;
+  }));
 }
 
 }  // namespace

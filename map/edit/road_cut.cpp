@@ -78,12 +78,44 @@ void cut_crossfall(pugi::xml_node lateral, const Cut& cut) {
   }
 }
 
+// A pattern goes on; dashes that begin before are gone.
+void move_pattern(pugi::xml_node line, double by_m) {
+  const double start_m = number(line, "sOffset") - by_m;
+  const double period_m = number(line, "length") + number(line, "space");
+  const double behind_m = period_m > 0.0 ? period_m * std::ceil(-start_m / period_m) : 0.0;
+  set_number(line, "sOffset", start_m >= 0.0 ? start_m : std::max(0.0, start_m + behind_m));
+}
+
+// A single line: the part inside stays.
+void cut_line(pugi::xml_node line, double from_m, double to_m) {
+  const double start_m = number(line, "sOffset"), length_m = number(line, "length");
+  const double first_m = std::max(start_m, from_m), last_m = std::min(start_m + length_m, to_m);
+  if (first_m >= last_m) {
+    line.parent().remove_child(line);
+  } else if (first_m > start_m || last_m < start_m + length_m || from_m > 0.0) {
+    set_number(line, "sOffset", first_m - from_m);
+    set_number(line, "length", last_m - first_m);
+  }
+}
+
+// What a marking says of places behind its own start.
+void cut_marking(pugi::xml_node mark, const Cut& cut) {
+  const double s_m = number(mark, "sOffset");
+  const double from_m = cut.at_start ? std::max(0.0, cut.from_m - s_m) : 0.0;
+  const double to_m = cut.at_end ? cut.to_m - s_m : HUGE_VAL;
+  for (const auto line : children(mark.child("explicit"), "line")) cut_line(line, from_m, to_m);
+  if (from_m == 0.0) return;
+  for (const auto line : children(mark.child("type"), "line")) move_pattern(line, from_m);
+  cut_cubics(children(mark, "sway"), "ds", {from_m, to_m, true, false});
+}
+
 // Whatever in a lane begins at an offset from its section's start.
 void cut_lane(pugi::xml_node lane, const Cut& cut) {
   std::set<std::string> names;
   for (const auto child : lane.children()) {
     if (child.attribute("sOffset")) names.insert(child.name());
   }
+  for (const auto mark : children(lane, "roadMark")) cut_marking(mark, cut);
   for (const std::string& name : names) {
     const auto records = children(lane, name.c_str());
     if (name == "width" || name == "border") {
@@ -260,41 +292,47 @@ void cut_lengths(pugi::xml_node parent, const char* name, const Cut& cut) {
   }
 }
 
-// An outline by stations of the road has to lie inside whole.
+// What of an object has stations of the road: it has to lie inside whole.
+std::vector<pugi::xml_node> corners_of(pugi::xml_node object) {
+  std::vector<pugi::xml_node> corners;
+  for (const auto& found : object.select_nodes(".//cornerRoad | .//vertexRoad")) {
+    corners.push_back(found.node());
+  }
+  return corners;
+}
+
 bool has_corner_outside(pugi::xml_node object, const Cut& cut) {
-  return object.find_node([&](pugi::xml_node node) {
-    return std::string_view(node.name()) == "cornerRoad" && !is_inside(number(node, "s"), cut);
+  return std::ranges::any_of(corners_of(object), [&](pugi::xml_node corner) {
+    return !is_inside(number(corner, "s"), cut);
   });
 }
 
-void shift_corners(pugi::xml_node object, double by_m) {
-  const auto shift = [&](pugi::xml_node outline) {
-    for (const auto corner : outline.children("cornerRoad")) {
-      set_number(corner, "s", number(corner, "s") + by_m);
-    }
-  };
-  for (const auto outline : object.children("outline")) shift(outline);
-  for (const auto outline : object.child("outlines").children("outline")) shift(outline);
+void shift_object(pugi::xml_node object, double by_m) {
+  set_number(object, "s", std::max(0.0, number(object, "s") + by_m));
+  for (const auto corner : corners_of(object)) set_number(corner, "s", number(corner, "s") + by_m);
 }
 
-void cut_object(pugi::xml_node object, const Cut& cut) {
+/// @param whole_from_m  station of the whole road at which this one begins.
+void cut_object(pugi::xml_node road, pugi::xml_node object, const Cut& cut, double whole_from_m) {
   const bool repeated = object.child("repeat");
   if (repeated) cut_lengths(object, "repeat", cut);
   const bool stays = repeated ? bool(object.child("repeat")) : is_inside(number(object, "s"), cut);
-  if (!stays || has_corner_outside(object, cut)) {
-    object.parent().remove_child(object);
+  if (stays && has_corner_outside(object, cut)) {
+    shift_object(child_of(clip_memory(road), "objects").append_copy(object), whole_from_m);
+  } else if (stays) {
+    if (cut.at_start) shift_object(object, -cut.from_m);
     return;
   }
-  if (!cut.at_start) return;
-  set_number(object, "s", std::max(0.0, number(object, "s") - cut.from_m));
-  shift_corners(object, -cut.from_m);
+  object.parent().remove_child(object);
 }
 
-void cut_furniture(pugi::xml_node road, const Cut& cut) {
+void cut_furniture(pugi::xml_node road, const Cut& cut, double whole_from_m) {
   const pugi::xml_node signals = road.child("signals"), objects = road.child("objects");
   cut_places(signals, "signal", cut);
   cut_places(signals, "signalReference", cut);
-  for (const auto object : children(objects, "object")) cut_object(object, cut);
+  for (const auto object : children(objects, "object")) {
+    cut_object(road, object, cut, whole_from_m);
+  }
   cut_places(objects, "objectReference", cut);
   cut_lengths(objects, "bridge", cut);
   cut_lengths(objects, "tunnel", cut);
@@ -391,12 +429,27 @@ void cut_road(pugi::xml_node road, double from_m, double to_m) {
   cut_plan_view(road.child("planView"), from_m, cut.at_end ? to_m : HUGE_VAL);
   cut_profiles(road, cut);
   whole.section += cut_sections(road.child("lanes"), length_m, cut);
-  cut_furniture(road, cut);
+  cut_furniture(road, cut, whole.from_m);
   set_number(road, "length", to_m - from_m);
   if (cut.at_end) whole.to_m = whole.from_m + to_m;
   if (cut.at_start) whole.from_m += from_m;
   remember_cut(road, whole);
   restore_lateral(road);
+}
+
+void restore_objects(pugi::xml_node road) {
+  pugi::xml_node memory = find_clip_memory(road);
+  const RoadCut part = road_cut(road);
+  const Cut ends{part.from_m, part.to_m, !part.has_start(), !part.has_end()};
+  for (const auto kept : children(memory.child("objects"), "object")) {
+    if (has_corner_outside(kept, ends)) continue;
+    pugi::xml_node list = ordered_child(road, "objects", kRoadOrder);
+    if (!list.find_child_by_attribute("object", "id", kept.attribute("id").value())) {
+      shift_object(list.append_copy(kept), -part.from_m);
+    }
+    memory.child("objects").remove_child(kept);
+  }
+  if (!memory.child("objects").first_child()) memory.remove_child("objects");
 }
 
 void restore_lateral(pugi::xml_node road) {

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "roadbed/map/files/xml_characters.h"
+
 namespace roadbed::map::inline edit {
 namespace {
 
@@ -40,6 +42,13 @@ class IsDeep : public pugi::xml_tree_walker {
 pugi::xml_node next_said(pugi::xml_node node, const Ignored& ignored) {
   while (node && (node.type() == pugi::node_comment || ignored(node))) node = node.next_sibling();
   return node;
+}
+
+void print_declaration(pugi::xml_node declaration, pugi::xml_writer& writer) {
+  pugi::xml_document copy;
+  copy.append_copy(declaration);
+  declare_utf8(copy.first_child());
+  copy.print(writer, "", pugi::format_default, pugi::encoding_utf8);
 }
 
 bool have_same_attributes(pugi::xml_node a, pugi::xml_node b) {
@@ -140,7 +149,11 @@ std::string text_of(pugi::xml_node root, const std::string& indent, std::size_t 
   StringWriter writer(text);
   const unsigned format = IsDeep()(root) ? pugi::format_raw : pugi::format_default;
   for (const pugi::xml_node node : root.parent().children()) {
-    node.print(writer, indent.c_str(), format, pugi::encoding_utf8);
+    if (node.type() == pugi::node_declaration) {
+      print_declaration(node, writer);
+    } else {
+      node.print(writer, indent.c_str(), format, pugi::encoding_utf8);
+    }
   }
   return text;
 }

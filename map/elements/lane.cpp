@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <optional>
 #include <utility>
 
 namespace roadbed::map::inline elements {
@@ -90,11 +92,8 @@ bool is_surface(LaneType type) {
 }
 
 std::optional<double> Lane::speed_limit_at_mps(double s_m) const {
-  std::optional<double> limit_mps;
-  for (const SpeedLimit& limit : speed_limits) {
-    if (limit.from_s_m <= s_m) limit_mps = limit.limit_mps;
-  }
-  return limit_mps;
+  const auto after = std::ranges::upper_bound(speed_limits, s_m, {}, &SpeedLimit::from_s_m);
+  return after == speed_limits.begin() ? std::nullopt : std::prev(after)->limit_mps;
 }
 
 std::optional<double> Lane::least_speed_limit_mps() const {

@@ -29,8 +29,10 @@ int say(const std::string& text, char* message, std::size_t size) {
 }
 
 int say_fault(const Context& context, char* message, std::size_t size) {
-  return say(proj_context_errno_string(context.get(), proj_context_errno(context.get())), message,
-             size);
+  const int fault = proj_context_errno(context.get());
+  return say(
+      fault == 0 ? "it is no coordinate system" : proj_context_errno_string(context.get(), fault),
+      message, size);
 }
 
 /// Where PROJ's own tables are, in a package that brings them along; empty: where PROJ has them.
@@ -45,18 +47,20 @@ std::string own_tables() {
 Context quiet_context() {
   Context context(proj_context_create());
   proj_log_level(context.get(), PJ_LOG_NONE);
+  proj_context_use_proj4_init_rules(context.get(), 1);  // +init=epsg:25832, as old maps have it
   static const std::string tables = own_tables();
   const char* const folder = tables.c_str();
   if (!tables.empty()) proj_context_set_search_paths(context.get(), 1, &folder);
   return context;
 }
 
-/// Heights are another matter: of a compound system the horizontal part.
+/// Heights are another matter: of a compound system the horizontal part. The words of a PROJ string
+/// may come without their plus signs.
 Object horizontal(const Context& context, const char* crs) {
   std::string text = crs;
-  if (text.find("+proj=") != std::string::npos && text.find("+type=crs") == std::string::npos) {
-    text += " +type=crs";
-  }
+  const auto says = [&](const char* word) { return text.find(word) != std::string::npos; };
+  const bool is_well_known_text = says("[");
+  if (!is_well_known_text && says("proj=") && !says("type=crs")) text += " +type=crs";
   Object object(proj_create(context.get(), text.c_str()));
   if (object && proj_get_type(object.get()) == PJ_TYPE_COMPOUND_CRS) {
     object.reset(proj_crs_get_sub_crs(context.get(), object.get(), 0));

@@ -60,11 +60,13 @@ bool describe(const std::string& crs, std::vector<char>& wkt, Message& message) 
   return function(crs.c_str(), wkt.data(), wkt.size(), message.data(), message.size()) == 0;
 }
 
-/// What a word of a PROJ string says, as "32" of "+zone=32"; a word without a value says "".
+/// What a word of a PROJ string says, as "32" of "+zone=32" or "zone=32"; a word without a value
+/// says "".
 std::map<std::string, std::string, std::less<>> words_of_proj(const std::string& crs) {
   std::map<std::string, std::string, std::less<>> words;
   std::istringstream text(crs);
   for (std::string word; text >> word;) {
+    word.erase(0, word.find_first_not_of('+'));
     const std::size_t sign = word.find('=');
     words.emplace(word.substr(0, sign), sign == word.npos ? "" : word.substr(sign + 1));
   }
@@ -78,21 +80,21 @@ std::optional<int> epsg_of_proj(const std::string& crs) {
     return found != words.end() && found->second == value;
   };
   const auto is_zero = [](char c) { return c == '0' || c == ',' || c == '.'; };
-  const auto shift = words.find("+towgs84");
+  const auto shift = words.find("towgs84");
   const bool is_shifted =
       shift != words.end() && !std::all_of(shift->second.begin(), shift->second.end(), is_zero);
-  const bool is_wgs84 = says("+datum", "WGS84") ||
-                        (says("+ellps", "WGS84") && !words.contains("+datum") && !is_shifted);
-  const bool in_metres = !words.contains("+units") || says("+units", "m");
-  if (!is_wgs84 || words.contains("+nadgrids") || words.contains("+pm")) return {};
-  if (says("+proj", "longlat")) return 4326;
-  const auto zone = words.find("+zone");
-  if (!says("+proj", "utm") || !in_metres || zone == words.end()) return {};
+  const bool is_wgs84 =
+      says("datum", "WGS84") || (says("ellps", "WGS84") && !words.contains("datum") && !is_shifted);
+  const bool in_metres = !words.contains("units") || says("units", "m");
+  if (!is_wgs84 || words.contains("nadgrids") || words.contains("pm")) return {};
+  if (says("proj", "longlat")) return 4326;
+  const auto zone = words.find("zone");
+  if (!says("proj", "utm") || !in_metres || zone == words.end()) return {};
   int number = 0;
   const char* end = zone->second.data() + zone->second.size();
   const auto [rest, fault] = std::from_chars(zone->second.data(), end, number);
   if (fault != std::errc() || rest != end || number < 1 || number > 60) return {};
-  return (words.contains("+south") ? 32700 : 32600) + number;
+  return (words.contains("south") ? 32700 : 32600) + number;
 }
 
 }  // namespace

@@ -185,6 +185,21 @@ std::string sha256_of_file(const fs::path& file) {
 
 std::string stream_sha256(const fs::path& file) { return stream_bytes(file).sha256; }
 
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
 bool is_stream(const fs::path& file) {
   if (is_standard_stream(file)) return true;
   std::error_code error;

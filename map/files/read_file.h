@@ -39,6 +39,12 @@ std::string stream_sha256(const std::filesystem::path& file);
 /// Whether it can be read once only: standard input as `-`, a pipe or a socket.
 bool is_stream(const std::filesystem::path& file);
 
+/// Whether there is something, a folder, or a regular file, behind links. False also where that
+/// cannot be looked at (a loop of links, a name that is too long): whoever opens it says why.
+bool is_there(const std::filesystem::path& path);
+bool is_folder(const std::filesystem::path& path);
+bool is_file(const std::filesystem::path& path);
+
 /// Whether it is standard input or output: `-`.
 bool is_standard_stream(const std::filesystem::path& file);
 

@@ -1,6 +1,7 @@
 #include "roadbed/map/files/xml_characters.h"
 
 #include <fmt/format.h>
+#include <strings.h>
 
 #include <algorithm>
 #include <array>
@@ -218,12 +219,24 @@ std::string without_controls(std::string bytes) {
   return text;
 }
 
+void declare_utf8(pugi::xml_node declaration) {
+  if (declaration.type() != pugi::node_declaration) return;
+  constexpr std::array<const char*, 8> read = {"UTF-16", "UTF-16LE",   "UTF-16BE", "UTF-32",
+                                               "UCS-2",  "ISO-8859-1", "latin1",   "US-ASCII"};
+  pugi::xml_attribute encoding = declaration.attribute("encoding");
+  if (std::ranges::any_of(
+          read, [&](const char* name) { return ::strcasecmp(encoding.value(), name) == 0; })) {
+    encoding.set_value("UTF-8");
+  }
+}
+
 std::string in_utf8(std::string bytes) {
   if (!is_other_encoding(bytes)) return bytes;
   pugi::xml_document document;
   // Of a fragment the breaks before the root are kept, too.
   constexpr unsigned all = pugi::parse_full | pugi::parse_ws_pcdata | pugi::parse_fragment;
   if (!document.load_buffer(bytes.data(), bytes.size(), all)) return bytes;
+  declare_utf8(document.first_child());
   std::ostringstream text;
   document.save(text, "", pugi::format_raw | pugi::format_no_declaration, pugi::encoding_utf8);
   return std::move(text).str();

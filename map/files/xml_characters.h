@@ -3,6 +3,10 @@
 #include <string>
 #include <string_view>
 
+namespace pugi {
+class xml_node;
+}
+
 namespace roadbed::map::inline files {
 
 /// What the value of an attribute says, on one line: references to characters (`&lt;`, `&#228;`)
@@ -32,7 +36,12 @@ bool is_other_encoding(std::string_view bytes);
 /// lines, what is in UTF-16 becomes UTF-8.
 std::string without_controls(std::string bytes);
 
-/// XML in UTF-8, its elements on the same lines; as it stands if it is not well-formed.
+/// Makes the declaration of a document that was read from another encoding say that it is in UTF-8;
+/// one whose encoding pugixml does not know was read, and is written, as it stands.
+void declare_utf8(pugi::xml_node declaration);
+
+/// XML in UTF-8, as its declaration says then, its elements on the same lines; as it stands if it
+/// is not well-formed.
 std::string in_utf8(std::string bytes);
 
 }  // namespace roadbed::map::files

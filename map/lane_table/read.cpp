@@ -14,6 +14,7 @@
 #include "roadbed/map/elements/participants.h"
 #include "roadbed/map/elements/side.h"
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/projection.h"
 #include "roadbed/map/files/transverse_mercator.h"
 #include "roadbed/map/lane_table/shapes.h"
 #include "roadbed/map/lane_table/table.h"
@@ -129,6 +130,7 @@ class Builder {
   void place(Table& table) {
     std::optional<TransverseMercator> grid;
     parts_.crs = table.crs;
+    if (!table.in_degrees) check_metres(table.crs);
     bool is_first = true;
     for (Row& row : table.rows) {
       for (Eigen::Vector3d& point : row.points) {
@@ -144,6 +146,12 @@ class Builder {
         point.head<2>() -= parts_.origin_in_source;
       }
     }
+  }
+
+  /// Widths and speeds are of metres. What PROJ does not know is left to whoever drew it.
+  static void check_metres(const std::string& crs) {
+    const bool is_utm = epsg_code(crs).value_or(0) / 1000 == 32;
+    if (!crs.empty() && !is_utm && projection_fault(crs).empty()) require_metres(crs);
   }
 
   void check_degrees(const Row& row, const Eigen::Vector3d& point) const {
@@ -252,6 +260,11 @@ class Builder {
     lane.participants = users_of(lane.type);
     const auto kmh = number_of(mapping_.speed_kmh, row);
     if (kmh && *kmh > 0.0) lane.speed_limits = {{0.0, *kmh / 3.6}};
+    const std::string_view limit = row.value(mapping_.speed_kmh.column);
+    if (!kmh && !limit.empty()) {
+      parts_.remarks.push_back({"import.speed-limit", true, "row " + row.id, 0,
+                                fmt::format("its speed \"{}\" is no number of km/h", limit)});
+    }
   }
 
   static LaneType type_named(const std::string& word) {

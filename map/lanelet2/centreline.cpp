@@ -299,6 +299,11 @@ Eigen::Vector3d middle_vertex(const Line3& line, bool reversed = false) {
   return 0.5 * (line.front() + line.back());
 }
 
+Line3 moved(Line3 line, const Eigen::Vector3d& by) {
+  for (Eigen::Vector3d& point : line) point += by;
+  return line;
+}
+
 // The point of the centreline nearest to a vertex, searched from the segment of the one before.
 class NearestAhead {
  public:
@@ -347,7 +352,10 @@ std::vector<double> stations_along(const Line3& centre, const Line3& border) {
 }  // namespace
 
 Centreline centreline_between(const Line3& left, const Line3& right) {
-  return Ladder(left, right).climb();
+  const Eigen::Vector3d origin(left.front().x(), left.front().y(), 0.0);
+  Centreline found = Ladder(moved(left, -origin), moved(right, -origin)).climb();
+  found.points = moved(std::move(found.points), origin);
+  return found;
 }
 
 Centreline centreline_along(Line3 centre, const Line3& left, const Line3& right) {

@@ -22,7 +22,9 @@ struct Centreline {
 ///     right  ●────●─┴──●────●──●      midpoint of each rung: a vertex of the centreline
 ///
 /// Vertices that the climb passes over lie between those beside them. O(N + M) rungs, each looks
-/// at most 256 vertices ahead and behind.
+/// at most 256 vertices ahead and behind. Where two rungs are equally near or a rung just touches a
+/// border, rounding decides: the first left vertex is the origin for it, so that the answer does
+/// not depend on where the map has its own.
 /// @param left, right  in driving direction, two points or more each.
 Centreline centreline_between(const Line3& left, const Line3& right);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "roadbed/map/files/input_error.h"
@@ -78,6 +79,8 @@ class RegulationBuilder {
   // Which lanes name each regulatory element.
   void find_lanes() {
     lanes_of_relation_.resize(document_.relations.size());
+    ranks_of_relation_.resize(document_.relations.size());
+    limit_rank_of_lane_.assign(built_.lanes.size(), std::numeric_limits<std::size_t>::max());
     for (const Lane& lane : built_.lanes) {
       const Relation& relation = document_.relations[built_.relations[lane.id.index]];
       for (const Member& member : relation.members) {
@@ -91,7 +94,10 @@ class RegulationBuilder {
           continue;
         }
         std::vector<LaneId>& lanes = lanes_of_relation_[*found];
-        if (lanes.empty() || lanes.back() != lane.id) lanes.push_back(lane.id);
+        if (!lanes.empty() && lanes.back() == lane.id) continue;
+        lanes.push_back(lane.id);
+        ranks_of_relation_[*found].push_back(
+            static_cast<std::size_t>(&member - relation.members.data()));
       }
     }
   }
@@ -114,7 +120,7 @@ class RegulationBuilder {
     }
     add_signals(relation, regulation);
     add_stop_lines(relation, regulation);
-    if (relation.subtype == "speed_limit") add_speed_limit(relation, regulation);
+    if (relation.subtype == "speed_limit") add_speed_limit(index, regulation);
     parts_.regulations.push_back(std::move(regulation));
   }
 
@@ -261,11 +267,15 @@ class RegulationBuilder {
     return {};
   }
 
-  void add_speed_limit(const Relation& relation, const Regulation& regulation) {
-    std::string_view code = value_of(relation.tags, "sign_type");
+  // What the sign shows counts before what the element says, and of several elements the one that a
+  // lanelet names first, as in the library lanelet2 (TrafficRules::speedLimit).
+  void add_speed_limit(std::uint32_t index, const Regulation& regulation) {
+    const Relation& relation = document_.relations[index];
+    std::string_view code;
     for (const RegulationMember& member : regulation.members) {
       if (member.role == "refers" && code.empty()) code = subtype_of(member);
     }
+    if (code.empty()) code = value_of(relation.tags, "sign_type");
     if (code.empty()) code = value_of(relation.tags, "speed_limit");
     const std::optional<double> limit_mps = sign_speed_mps(code);
     if (!limit_mps) {
@@ -275,8 +285,11 @@ class RegulationBuilder {
                                   code));
       return;
     }
-    for (const LaneId lane : regulation.lanes) {
-      built_.lanes[lane.index].speed_limits = {{0.0, limit_mps}};
+    for (std::size_t i = 0; i < regulation.lanes.size(); ++i) {
+      const std::size_t lane = regulation.lanes[i].index, rank = ranks_of_relation_[index][i];
+      if (rank >= limit_rank_of_lane_[lane]) continue;
+      limit_rank_of_lane_[lane] = rank;
+      built_.lanes[lane].speed_limits = {{0.0, limit_mps}};
     }
   }
 
@@ -286,6 +299,8 @@ class RegulationBuilder {
   std::size_t budget_;
   std::vector<std::optional<std::size_t>> signal_of_way_, stop_line_of_way_;
   std::vector<std::vector<LaneId>> lanes_of_relation_;
+  std::vector<std::vector<std::size_t>> ranks_of_relation_;  // its place among each lane's members
+  std::vector<std::size_t> limit_rank_of_lane_;              // of the element that set its limit
 };
 
 }  // namespace

@@ -91,6 +91,14 @@ class LaneBuilder {
                         "its lane section has no length and the lane is left out"});
   }
 
+  // Who may use a lane is one answer for all of it.
+  void remark_partial_access(const LaneRecord& lane, const std::string& name) {
+    remarks_.push_back({"import.partial-access", false, "lane " + name, lane.line,
+                        fmt::format("its access changes at s = {} m; who is kept out of a part of "
+                                    "the lane is kept out of all of it",
+                                    lane.accesses.back().s_m)});
+  }
+
   void add_lane(std::size_t section_index, const SectionSide& side, const SideLines& lines,
                 std::size_t index) {
     const LaneRecord& record = *side.lanes[index];
@@ -107,7 +115,10 @@ class LaneBuilder {
     lane.one_way = record.direction != "both" && record.type != LaneType::bidirectional;
     lane.participants = participants_along(record);
     lane.attributes = record.attributes;
-    if (!record.accesses.empty()) lane.attributes.emplace_back("access", access_in_words(record));
+    if (!record.accesses.empty()) {
+      lane.attributes.emplace_back("access", access_in_words(record));
+      if (record.accesses.back().s_m > side.from_s_m) remark_partial_access(record, lane.name);
+    }
     set_lines(side, lines, index, forward, lane);
     if (lay_ring(lane)) folded_.push_back(built_.lanes.size());
     built_.ids[{road_index_, section_index, record.id}] = lane.id;

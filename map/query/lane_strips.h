@@ -13,10 +13,11 @@ namespace roadbed::map::inline query {
 ///     right  ●─────┴──┴──────●────●
 struct LaneStrip {
   double from_s_m = 0.0, to_s_m = 0.0;
-  double area_m2 = 0.0;          ///< of its quadrangle, negative where the borders are swapped
-  double width_m = 0.0;          ///< between the borders at its middle
-  double slope = 0.0;            ///< of the centreline, positive uphill [m/m]
-  double curvature_per_m = 0.0;  ///< of the centreline at its middle, from chords of 1 m
+  double area_m2 = 0.0;  ///< of its quadrangle, negative where the borders are swapped
+  double width_m = 0.0;  ///< between the borders at its middle, across the centreline
+  double start_width_m = 0.0, end_width_m = 0.0;  ///< the same at its ends
+  double slope = 0.0;                             ///< of the centreline, positive uphill [m/m]
+  double curvature_per_m = 0.0;  ///< of the centreline, that of its more curved end
 
   double length_m() const { return to_s_m - from_s_m; }
 };

@@ -8,6 +8,7 @@
 
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/geometry/polygons/ring.h"
+#include "roadbed/map/elements/lane_curvature.h"
 #include "roadbed/map/validation/lane_folds.h"
 #include "roadbed/map/validation/validate.h"
 
@@ -145,24 +146,6 @@ void short_lanes(const RoadMap& road_map, const ValidateOptions&, Report& report
   }
 }
 
-/// Curvature of the centreline about a vertex, from the turn between two chords of at least that
-/// length. A line drawn by few points turns at them for the whole bend between them, which then is
-/// as long as its segments, as far as the line can stand for the bend to a quarter of a metre: the
-/// middle of an arc of length L that turns by θ is L θ / 8 off its chord.
-double curvature_per_m(const Lane& lane, std::size_t vertex, double chord_m) {
-  constexpr double kDrawnTo = 0.25;  // [m]
-  const auto& line = lane.centre.in_map;
-  const auto& stations_m = line.stations_m();
-  const double s_m = stations_m[vertex];
-  const Vector2d before = line.at(s_m) - line.at(s_m - chord_m);
-  const Vector2d after = line.at(s_m + chord_m) - line.at(s_m);
-  const double cross = before.x() * after.y() - before.y() * after.x();
-  const double turn_rad = std::atan2(cross, before.dot(after));
-  const double segment_m = 0.5 * (stations_m[vertex + 1] - stations_m[vertex - 1]);
-  const double drawn_m = std::min(segment_m, 8.0 * kDrawnTo / std::max(std::abs(turn_rad), 1e-9));
-  return turn_rad / std::max(chord_m, drawn_m);
-}
-
 struct Bend {
   double s_m = 0.0, curvature_per_m = 0.0;
 };
@@ -173,8 +156,7 @@ Bend tightest_bend(const Lane& lane, double chord_m) {
   const auto& stations_m = lane.centre.in_map.stations_m();
   for (std::size_t i = 1; i + 1 < stations_m.size(); ++i) {
     const double s_m = stations_m[i];
-    if (s_m < chord_m || s_m > lane.length_m() - chord_m) continue;
-    const double curvature = std::abs(curvature_per_m(lane, i, chord_m));
+    const double curvature = std::abs(curvature_about_per_m(lane, s_m, chord_m));
     if (curvature > tightest.curvature_per_m) tightest = {s_m, curvature};
   }
   return tightest;

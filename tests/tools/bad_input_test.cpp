@@ -273,5 +273,36 @@ TEST(BadInput, WrongUsageHasAStatusOfItsOwn) {
   EXPECT_EQ(run_roadbed({"import", "--no-such-option"}).status, 2);
 }
 
+/// Neither a loop of links nor a name beyond the system's limit can be looked at.
+TEST(BadInput, WhatCannotBeLookedAtIsOneLine) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "scenarios");
+  for (const char* name : {"loop", "scenarios/loop.json"}) {
+    std::filesystem::create_symlink(std::filesystem::path(name).filename(), folder / name);
+  }
+  const std::string loop = folder / "loop", town = data_folder() / "town.xodr", out = folder / "o";
+  const std::string drive =
+      folder.write("drive.csv", "t_s,x_m,y_m,heading_rad\n0,0,0,0\n1,9,0,0\n");
+  for (const std::string& file : {loop, std::string(5000, 'a')}) {
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"simulate", file, "-o", out},
+             {"plan", file, "-o", out},
+             {"audit", "--trajectory", file, "--occupancy", town},
+             {"audit", "--trajectory", drive, "--occupancy", file},
+             {"audit", "--trajectory", drive, "--map", town, "--on", "drivable", "--obstacles",
+              file},
+             {"report", "drive", file, "-o", out + ".html"},
+             {"report", "compare", file, file},
+             {"validate", town, "--only", file},
+             {"map", "transform", town, "--elevation", file, "-o", out + ".xodr"}}) {
+      const ProgramRun run = run_roadbed(words);
+      EXPECT_TRUE(run.status == 2 || run.status == 3) << words[0] << " " << run.status << run.err;
+      EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err.substr(0, 300);
+      EXPECT_EQ(run.err.find("internal error"), std::string::npos) << run.err.substr(0, 300);
+    }
+  }
+  expect_refused(run_roadbed({"simulate", folder / "scenarios", "-o", out}), "loop.json");
+}
+
 }  // namespace
 }  // namespace roadbed::tests

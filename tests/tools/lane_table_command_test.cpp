@@ -24,6 +24,12 @@ TEST(ImportCommand, ReadsLanesOfSomeonesOwnByTheirColumns) {
   const ProgramRun none =
       run_roadbed({"import", lanes, "--columns", folder / "none.json", "-o", folder / "other.rbm"});
   EXPECT_EQ(none.status, 3);
+  // No rule looks at the text of a table: that it is not there is nothing to say.
+  const ProgramRun judged = run_roadbed({"validate", compiled});
+  EXPECT_EQ(judged.err, "");
+  const ProgramRun named = run_roadbed({"validate", compiled, "--source", lanes});
+  EXPECT_EQ(named.status, 3);
+  EXPECT_NE(named.err.find("no rule looks at"), std::string::npos) << named.err;
 }
 
 }  // namespace

@@ -142,7 +142,31 @@ TEST(ValidateBaseline, LetsKnownFindingsPassAndSaysWhatIsNewAndGone) {
       run_roadbed({"validate", old_file, "--disable", "geometry.gap", "--disable", "crs.missing",
                    "--baseline", known, "--fail-on", "info"});
   EXPECT_EQ(less.status, 0);
-  EXPECT_NE(less.out.find("gone: map [crs.missing]"), std::string::npos) << less.out;
+  EXPECT_NE(less.out.find("6 known, 0 gone, 1 not looked for"), std::string::npos) << less.out;
+
+  const std::string other = folder.write(
+      "other.json",
+      R"({"roadbed_findings":1,"findings":[{"rule":"geometry.gap","element":"lane 9/0/1"}]})");
+  EXPECT_NE(run_roadbed({"validate", old_file, "--baseline", other})
+                .out.find("gone: lane 9/0/1 [geometry.gap]"),
+            std::string::npos);
+}
+
+TEST(ValidateBaseline, AFindingThatHasBecomeGraverIsNew) {
+  const TemporaryFolder folder;
+  const std::string known = folder / "known.json";
+  run_roadbed({"validate", gap_file(), "--write-baseline", known});
+  const ProgramRun same = run_roadbed({"validate", gap_file(), "--baseline", known, "--severity",
+                                       "geometry.gap=error", "--fail-on", "info"});
+  EXPECT_EQ(same.status, 0) << same.out;
+  std::string text = bytes_of(known);
+  const std::size_t gap = text.find("geometry.gap"), grave = text.find("\"warning\"", gap);
+  ASSERT_NE(grave, std::string::npos);
+  folder.write("known.json", text.replace(grave, 9, "\"info\""));
+  const ProgramRun graver =
+      run_roadbed({"validate", gap_file(), "--baseline", known, "--fail-on", "warning"});
+  EXPECT_EQ(graver.status, 1) << graver.out;
+  EXPECT_NE(graver.out.find("1 warnings, 0 notes that are new"), std::string::npos) << graver.out;
 }
 
 TEST(ValidateBaseline, MarksFindingsInJsonAndSarif) {

@@ -126,7 +126,7 @@ fs::path AuditSubjects::file() const {
 }
 
 bool AuditSubjects::is_folder() const {
-  return log_.empty() && fs::is_directory(trajectory_) && !map::is_log(trajectory_);
+  return log_.empty() && map::is_folder(trajectory_) && !map::is_log(trajectory_);
 }
 
 std::vector<AuditSubject> AuditSubjects::list(const map::RoadMap* road_map,

@@ -13,6 +13,7 @@
 #include <system_error>
 #include <vector>
 
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/storage/output_file.h"
 
 namespace roadbed::tools::inline batch {
@@ -22,6 +23,19 @@ namespace fs = std::filesystem;
 
 constexpr const char* kLock = "lock";
 constexpr const char* kUnfinished = "unfinished";
+
+// Whoever puts a link in place of one of these would have the batch write elsewhere.
+const fs::path& without_links(const fs::path& folder) {
+  for (const char* own : {kLock, kUnfinished, "journal", "files", "tables", "results.jsonl",
+                          "summary.json", "index.html", "timings.jsonl"}) {
+    std::error_code error;
+    if (!fs::is_symlink(folder / own, error)) continue;
+    throw map::OutputError({.file = (folder / own).string(),
+                            .found = "is a link, and a batch writes into its own folder only",
+                            .remedy = "remove it, or choose another folder"});
+  }
+  return folder;
+}
 
 int open_or_refuse(const fs::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
@@ -75,7 +89,8 @@ bool is_of_batch(const fs::path& folder) {
   return std::ranges::all_of(fs::directory_iterator(folder, error), is_lock);
 }
 
-FolderLock::FolderLock(const fs::path& folder) : descriptor_(open_or_refuse(folder / kLock)) {
+FolderLock::FolderLock(const fs::path& folder)
+    : descriptor_(open_or_refuse(without_links(folder) / kLock)) {
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
   ::close(descriptor_);
   throw map::InputError({.file = folder.string(),
@@ -86,7 +101,7 @@ FolderLock::FolderLock(const fs::path& folder) : descriptor_(open_or_refuse(fold
 FolderLock::~FolderLock() { ::close(descriptor_); }
 
 UnfinishedMark::UnfinishedMark(const fs::path& folder) : mark_(folder / kUnfinished) {
-  if (fs::exists(mark_)) sweep(folder);
+  if (map::is_there(mark_)) sweep(folder);
   ::close(open_or_refuse(mark_));
 }
 

@@ -11,7 +11,8 @@ bool is_of_batch(const std::filesystem::path& folder);
 /// however it ends.
 class FolderLock {
  public:
-  /// @throws InputError if another run has it; OutputError if the file cannot be made.
+  /// @throws InputError if another run has it; OutputError if the file cannot be made, or a name
+  ///         that is the batch's own is a link.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

@@ -59,11 +59,11 @@ std::vector<std::string> files_of(const std::vector<JobOutput>& outputs, const f
     files.push_back(file.lexically_relative(folder).generic_string());
   };
   for (const JobOutput& output : outputs) {
-    if (fs::is_directory(output.path)) {
+    if (map::is_folder(output.path)) {
       for (const auto& entry : fs::recursive_directory_iterator(output.path)) {
-        if (entry.is_regular_file()) add(entry.path());
+        if (map::is_file(entry.path())) add(entry.path());
       }
-    } else if (fs::exists(output.path)) {
+    } else if (map::is_there(output.path)) {
       add(output.path);
     }
   }

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/job_result.h"
@@ -67,7 +68,7 @@ std::vector<std::string> words_of(const Job& job, const std::vector<JobOutput>& 
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error && !fs::is_directory(folder)) {
+  if (error && !map::is_folder(folder)) {
     refuse_folder(folder, "cannot be made: " + error.message());
   }
 }

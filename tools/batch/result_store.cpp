@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/storage/output_folder.h"
 #include "roadbed/tools/batch/batch_summary.h"
 #include "roadbed/tools/batch/job.h"
@@ -28,7 +29,7 @@ std::vector<fs::path> journals_in(const fs::path& folder) {
   std::vector<fs::path> journals;
   if (std::error_code error; !fs::exists(folder, error)) return journals;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.is_regular_file() && entry.path().extension() == ".jsonl") {
+    if (map::is_file(entry.path()) && entry.path().extension() == ".jsonl") {
       journals.push_back(entry.path());
     }
   }
@@ -40,7 +41,7 @@ std::vector<fs::path> journals_in(const fs::path& folder) {
 fs::path next_journal(const fs::path& folder) {
   for (unsigned number = 1;; ++number) {
     fs::path journal = folder / fmt::format("{:06}.jsonl", number);
-    if (!fs::exists(journal)) return journal;
+    if (!map::is_there(journal)) return journal;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <new>
 
 #include "roadbed/map/files/in_threads.h"
@@ -13,6 +14,10 @@ namespace roadbed::tools::inline cli {
 Failure failure_of(const std::exception& error) {
   if (dynamic_cast<const map::InputError*>(&error) != nullptr) {
     return {Exit::unusable, error.what()};
+  }
+  if (const auto* fault = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
+    return {Exit::unusable, fmt::format("{}: {}; check the path", fault->path1().string(),
+                                        fault->code().message())};
   }
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
     return {Exit::internal, "out of memory"};

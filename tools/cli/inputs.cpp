@@ -28,7 +28,7 @@ std::unique_ptr<map::OccupancySource> occupancy_in(const fs::path& path,
   if (map::is_log(path)) {
     return std::make_unique<map::OccupancyMap>(map::load_occupancy_of_log(path, filter));
   }
-  if (fs::is_directory(path)) {
+  if (map::is_folder(path)) {
     if (!filter.keeps_all()) map::refuse_to_filter(map::input_name(path));
     return map::open_occupancy(path);
   }

@@ -1,6 +1,7 @@
 #include "roadbed/tools/cli/output_format.h"
 
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/formats.h"
 
 namespace roadbed::tools::inline cli {
@@ -29,7 +30,7 @@ std::string standard_output_fault(const std::filesystem::path& output, bool need
 }
 
 std::string output_name(const std::filesystem::path& output) {
-  return map::is_standard_stream(output) ? "standard output" : output.string();
+  return map::is_standard_stream(output) ? "standard output" : map::one_line(output.string());
 }
 
 }  // namespace roadbed::tools::cli

@@ -277,7 +277,7 @@ geometry::Trajectory parse_drive(std::string_view bytes, const std::string& name
 }
 
 bool is_solution(const fs::path& file) {
-  if (fs::is_directory(file) || map::is_log(file)) return false;
+  if (map::is_folder(file) || map::is_log(file)) return false;
   return begins_as_solution(map::read_file_start(file, kStart));
 }
 

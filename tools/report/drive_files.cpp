@@ -4,6 +4,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/planning/audit/audit_drive.h"
 #include "roadbed/tools/audit/certificate_json.h"
 #include "roadbed/tools/cli/build_id.h"
@@ -35,7 +36,7 @@ std::vector<DriveSource> sources_of(const Scenario& scenario, const DriveChoice&
   add("obstacles", scenario.obstacles_file);
   for (const ScenarioObstacle& obstacle : scenario.obstacles) {
     if (const auto* drove = std::get_if<RecordedObstacle>(&obstacle.motion)) {
-      if (fs::is_regular_file(drove->file)) add("obstacles", drove->file);
+      if (map::is_file(drove->file)) add("obstacles", drove->file);
     }
   }
   add("planner options", choice.planner_file);
@@ -140,7 +141,7 @@ DrivenScenario drive_and_describe(const ReadyDrive& ready, const DriveChoice& ch
 
 /// An .xml that is no CommonRoad scenario is not meant to be JSON.
 void refuse_other_xml(const fs::path& file) {
-  if (file.extension() != ".xml" || !fs::exists(file)) return;
+  if (file.extension() != ".xml" || !map::is_there(file)) return;
   throw map::InputError({.file = file.string(),
                          .found = "no <commonRoad> element",
                          .needed = "a CommonRoad scenario",

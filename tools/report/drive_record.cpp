@@ -122,9 +122,9 @@ DriveRecord parse_drive_record(std::string_view bytes, const fs::path& file) {
 
 DriveRecord read_drive_record(const fs::path& folder) {
   const fs::path file = folder / kDriveRecordName;
-  if (!fs::is_regular_file(file)) {
+  if (!map::is_file(file)) {
     throw map::InputError({.file = folder.string(),
-                           .found = fs::is_directory(folder) ? "holds no drive" : "no such folder",
+                           .found = map::is_folder(folder) ? "holds no drive" : "no such folder",
                            .needed = fmt::format("a folder with a {}", kDriveRecordName),
                            .remedy = "give one that `roadbed simulate -o` wrote"});
   }

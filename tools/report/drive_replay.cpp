@@ -76,7 +76,7 @@ class Comparison {
 }  // namespace
 
 bool names_drive_time(const std::string& text) {
-  return text.find('@') != std::string::npos && !fs::exists(text);
+  return text.find('@') != std::string::npos && !map::is_there(text);
 }
 
 DriveTime parse_drive_time(const std::string& text) {

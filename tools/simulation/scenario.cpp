@@ -322,10 +322,11 @@ Scenario read_scenario(const std::filesystem::path& file) {
 
 std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem::path& file) {
   std::vector<std::filesystem::path> files;
-  if (std::filesystem::is_directory(file)) {
+  if (map::is_folder(file)) {
     std::vector<std::filesystem::path> scenarios;
-    for (const auto& entry : std::filesystem::directory_iterator(file)) {
-      if (entry.path().extension() == ".json" && !entry.is_directory()) {
+    std::error_code unreadable;
+    for (const auto& entry : std::filesystem::directory_iterator(file, unreadable)) {
+      if (entry.path().extension() == ".json" && !map::is_folder(entry.path())) {
         scenarios.push_back(entry.path());
       }
     }

@@ -60,6 +60,7 @@ class RoadClipper {
           fmt::format("not cut, for a lane section of one side (singleSide): road {}",
                       fmt::join(uncut_, ", ")));
     }
+    result.count("objects across the border, put by for map merge", across_);
     result.count("road links taken off", settled.links);
     result.count("connections of junctions taken off", settled.connections);
     result.count("junctions without a connection, left out", settled.junctions);
@@ -88,11 +89,16 @@ class RoadClipper {
     for (std::size_t i = 1; i < spans.size(); ++i) {
       last_ = root_.insert_copy_after(node, last_);
       judged_.insert(last_);
-      cut_road(last_, spans[i].from_m, spans[i].to_m);
+      cut(last_, spans[i]);
       set_text(last_, "id", fresh_.fresh());  // its clip memory knows whose part it is
       ++parts_;
     }
-    cut_road(node, spans.front().from_m, spans.front().to_m);
+    cut(node, spans.front());
+  }
+
+  void cut(pugi::xml_node road, const StationSpan& span) {
+    cut_road(road, span.from_m, span.to_m);
+    across_ += children(find_clip_memory(road).child("objects"), "object").size();
   }
 
   pugi::xml_node root_;
@@ -102,7 +108,7 @@ class RoadClipper {
   FreshIds fresh_;
   pugi::xml_node last_;  // behind which new roads stand
   std::set<pugi::xml_node> judged_;
-  std::size_t whole_ = 0, cut_ = 0, parts_ = 0, outside_ = 0, unusable_ = 0;
+  std::size_t whole_ = 0, cut_ = 0, across_ = 0, parts_ = 0, outside_ = 0, unusable_ = 0;
   std::vector<std::string> uncut_;  // their ids
 };
 

@@ -264,9 +264,16 @@ void join_furniture(pugi::xml_node road, pugi::xml_node other, const char* list,
     pugi::xml_node copy = own.append_copy(item);
     if (!copy.attribute("s")) continue;
     set_number(copy, "s", number(item, "s") + offset_m);
-    for (const auto& inside : copy.select_nodes(".//cornerRoad | repeat")) {
+    for (const auto& inside : copy.select_nodes(".//cornerRoad | .//vertexRoad | repeat")) {
       set_number(inside.node(), "s", number(inside.node(), "s") + offset_m);
     }
+  }
+}
+
+// Objects across the seam stand in the memory of either part, by stations of the whole road.
+void join_memories(pugi::xml_node first, pugi::xml_node second) {
+  for (const auto object : find_clip_memory(second).child("objects").children("object")) {
+    child_of(clip_memory(first), "objects").append_copy(object);
   }
 }
 
@@ -308,12 +315,14 @@ void join_roads(pugi::xml_node first, pugi::xml_node second) {
   join_lanes(first.child("lanes"), second.child("lanes"), offset_m, in_one_section);
   join_furniture(first, second, "objects", offset_m);
   join_furniture(first, second, "signals", offset_m);
+  join_memories(first, second);
   set_number(
       first, "length",
       rest.has_end() && whole.has_start() ? rest.length_m : offset_m + number(second, "length"));
   whole.to_m = rest.to_m;
   remember_cut(first, whole);
   restore_lateral(first);
+  restore_objects(first);
 }
 
 }  // namespace roadbed::map::edit::merging

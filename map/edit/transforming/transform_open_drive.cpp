@@ -157,6 +157,8 @@ double scale_element(pugi::xml_node node, double base_m, const StationMapping& m
   if (is_one_of(name, {"road", "repeat", "bridge", "tunnel"})) {
     set_number(node, "length", mapping(here_m + number(node, "length")) - mapping(here_m));
   }
+  if (name == "repeat") scale_attributes(node, {"distance"}, along);
+  if (name == "line") scale_attributes(node, {"length", "space"}, along);  // of a marking
   if (name == "CRG") {
     for (const char* s : {"sStart", "sEnd"}) set_number(node, s, mapping(number(node, s)));
   }
@@ -325,8 +327,11 @@ class Mover {
     const double up_m = mapping_.up_m();
     if (up_m == 0.0) return;
     pugi::xml_node profile = ordered_child(road, "elevationProfile", kRoadOrder);
-    if (!profile.child("elevation")) {
-      pugi::xml_node record = profile.append_child("elevation");
+    const auto records = children(profile, "elevation");
+    const bool begins_at_start = std::ranges::any_of(
+        records, [](pugi::xml_node record) { return number(record, "s") <= 0.0; });
+    if (!begins_at_start) {  // the road is at height 0 up to its first record
+      pugi::xml_node record = profile.prepend_child("elevation");
       for (const char* name : {"s", "a", "b", "c", "d"}) set_number(record, name, 0.0);
     }
     for (const auto record : profile.children("elevation")) {

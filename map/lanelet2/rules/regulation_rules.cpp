@@ -5,6 +5,7 @@
 #include <set>
 
 #include "roadbed/map/lanelet2/rules/source.h"
+#include "roadbed/map/lanelet2/traffic_rules.h"
 
 namespace roadbed::map::lanelet2::rules {
 namespace {
@@ -36,6 +37,10 @@ void regulations_without_refers(const Source& source, const validation::Validate
              (of_lanes && (member.role == "yield" || member.role == "right_of_way"));
     };
     if (std::ranges::any_of(regulation->members, says_what)) continue;
+    const bool says_limit =
+        subtype == "speed_limit" && (!value_of(regulation->tags, "sign_type").empty() ||
+                                     !value_of(regulation->tags, "speed_limit").empty());
+    if (says_limit) continue;
     add_at(report, source, *regulation,
            of_lanes ? "names no lanelet that yields or has the right of way; add them"
                     : "refers to nothing; add its sign, light or line as member \"refers\"");

@@ -169,6 +169,72 @@ TEST(RoadJoin, GivesTheWholeRoadBack) {
   }
 }
 
+XmlDocument straight_road(const std::string& lanes, const std::string& objects) {
+  return {R"(<OpenDRIVE><header revMajor="1" revMinor="8"/><road id="1" length="200" junction="-1">
+    <planView><geometry s="0" x="0" y="0" hdg="0" length="200"><line/></geometry></planView>
+    <lanes><laneSection s="0"><center><lane id="0" type="none">)" +
+              lanes + R"(</lane></center></laneSection></lanes><objects>)" + objects +
+              "</objects></road></OpenDRIVE>",
+          "straight.xodr"};
+}
+
+constexpr const char* kZebra = R"(<object id="z" s="100" t="0"><outlines><outline id="0">
+    <cornerRoad s="90" t="0"/><cornerRoad s="110" t="2"/></outline></outlines></object>)";
+
+TEST(RoadCut, PutsByAnObjectAcrossTheCutForTheJoin) {
+  const XmlDocument first = straight_road("", kZebra), second = straight_road("", kZebra);
+  cut_road(road_of(first), 0.0, 105.0);
+  cut_road(road_of(second), 105.0, 200.0);
+  EXPECT_FALSE(road_of(first).child("objects").child("object"));
+  EXPECT_FALSE(road_of(second).child("objects").child("object"));
+  join_roads(road_of(first), road_of(second));
+  const auto object = road_of(first).child("objects").child("object");
+  const auto outline = object.child("outlines").child("outline");
+  EXPECT_NEAR(number(object, "s"), 100.0, 1e-9);
+  EXPECT_NEAR(number(outline.first_child(), "s"), 90.0, 1e-9);
+  EXPECT_NEAR(number(outline.last_child(), "s"), 110.0, 1e-9);
+}
+
+TEST(RoadJoin, KeepsAnObjectThatOnlyTheOtherPartHasWhole) {
+  const XmlDocument first = straight_road("", kZebra), second = straight_road("", kZebra);
+  cut_road(road_of(first), 0.0, 105.0);
+  cut_road(road_of(second), 80.0, 200.0);
+  EXPECT_TRUE(road_of(second).child("objects").child("object"));
+  join_roads(road_of(first), road_of(second));
+  EXPECT_NEAR(number(road_of(first).child("objects").child("object"), "s"), 100.0, 1e-9);
+}
+
+TEST(RoadCut, MovesVerticesOfSkeletonsWithTheRoad) {
+  const XmlDocument xml = straight_road("", R"(<object id="f" s="150" t="4"><skeleton>
+    <polyline id="0"><vertexRoad s="145" t="4" dz="0"/><vertexRoad s="155" t="4" dz="0"/></polyline>
+    </skeleton></object>)");
+  cut_road(road_of(xml), 50.0, 200.0);
+  const auto line = road_of(xml).select_node("objects/object/skeleton/polyline").node();
+  EXPECT_NEAR(number(line.first_child(), "s"), 95.0, 1e-9);
+  EXPECT_NEAR(number(line.last_child(), "s"), 105.0, 1e-9);
+}
+
+TEST(RoadCut, MovesLinesAndSwaysOfAMarkingWithIt) {
+  const XmlDocument xml = straight_road(
+      R"(<roadMark sOffset="0" type="broken"><sway ds="0" a="0" b="0" c="0" d="0"/>
+         <sway ds="30" a="1" b="0.1" c="0" d="0"/>
+         <type name="broken"><line length="3" space="6" sOffset="1" tOffset="0"/></type>
+         <explicit><line length="10" sOffset="2"/><line length="10" sOffset="45"/>
+         <line length="10" sOffset="80"/></explicit></roadMark>)",
+      "");
+  cut_road(road_of(xml), 50.0, 85.0);
+  const auto mark = road_of(xml).select_node("lanes//roadMark").node();
+  EXPECT_EQ(children(mark, "sway").size(), 1u);
+  EXPECT_NEAR(number(mark.child("sway"), "a"), 3.0, 1e-9);                      // 1 + 0.1 · 20
+  EXPECT_NEAR(number(mark.child("type").child("line"), "sOffset"), 5.0, 1e-9);  // 1 + 6 · 9 - 50
+  const auto lines = children(mark.child("explicit"), "line");
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_NEAR(number(lines[0], "sOffset"), 0.0, 1e-9);
+  EXPECT_NEAR(number(lines[0], "length"), 5.0, 1e-9);
+  EXPECT_NEAR(number(lines[1], "sOffset"), 30.0, 1e-9);
+  EXPECT_NEAR(number(lines[1], "length"), 5.0, 1e-9);
+}
+
 TEST(RoadJoin, IsNotForRoadsElsewhere) {
   const XmlDocument first = curved_road(), second = curved_road();
   cut_road(road_of(first), 0.0, 20.0);

@@ -203,6 +203,7 @@ TEST(XmlCharacters, OtherEncodingsBecomeUtf8OnTheSameLines) {
   XmlScanner scanner(text, "f.osm");
   scanner.next();
   EXPECT_EQ(scanner.value("b"), "ä");
+  EXPECT_THAT(text, HasSubstr("encoding=\"UTF-8\""));
   std::string wide;
   for (const char c : std::string("<a b=\"1\"/>")) wide += {c, '\0'};
   EXPECT_TRUE(is_other_encoding(wide));

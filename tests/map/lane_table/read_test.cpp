@@ -16,6 +16,7 @@
 #include "roadbed/map/lane_table/table.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/endless_rows.h"
+#include "roadbed/tests/support/made_road.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/support/refusal_of.h"
 
@@ -182,6 +183,23 @@ TEST(LaneTable, AGeoPackageWithMoreRowsThanItCanHoldIsRefused) {
     const std::string bytes = tests::with_endless_rows(whole, table);
     EXPECT_THROW(lane_table::read_geopackage(bytes, "f.gpkg", ""), InputError) << table;
   }
+}
+
+TEST(LaneTable, ASpeedThatIsNoNumberIsRemarked) {
+  const auto remarks = [](const std::string& speed) {
+    const std::string line = feature("LineString", "[[0,0],[9,0]]", R"("id":"a","v":)" + speed);
+    const RoadMap road_map = read(collection(line), R"({"width_m":3,"speed_kmh":"v"})");
+    return tests::remarks_of(road_map, "import.speed-limit");
+  };
+  EXPECT_THAT(remarks(R"("50")"), IsEmpty());
+  EXPECT_EQ(remarks(R"("50 km/h")").size(), 1u);
+}
+
+TEST(LaneTable, ASystemInFeetIsRefused) {
+  std::string line = collection(feature("LineString", "[[0,0],[9,0]]", R"("id":"a")"));
+  const std::string crs = R"({"type":"name","properties":{"name":"EPSG:2263"}})";
+  line.replace(line.find("null"), 4, crs);
+  EXPECT_THAT(refusal(line, R"({"width_m":3})"), HasSubstr("not a projected system in metres"));
 }
 
 TEST(LaneTable, WhatIsWrongIsSaidInOneLine) {

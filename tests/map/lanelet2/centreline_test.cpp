@@ -66,6 +66,32 @@ TEST(Centreline, ALongBorderCostsNoMoreThanItsLength) {
   EXPECT_NEAR(centreline_between(left, right).left_station_m.back(), 1999.9, 1e-6);
 }
 
+/// Coordinates that a shift takes no digit from; points on a coarse grid, for many rungs that are
+/// equally near or touch a border.
+TEST(Centreline, IsTheSameWhereverTheOriginIs) {
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> step(0, 3), aside(-1, 1);
+  for (int i = 0; i < 300; ++i) {
+    Line3 lines[2];
+    for (int k = 0; k < 2; ++k) {
+      Eigen::Vector3d at(0, k == 0 ? 1.3 : 0, 0);
+      for (int vertex = 0; vertex < 12; ++vertex) {
+        lines[k].push_back({std::ldexp(std::round(std::ldexp(at.x(), 20)), -20),
+                            std::ldexp(std::round(std::ldexp(at.y(), 20)), -20), 0});
+        at += Eigen::Vector3d(0.1 + 0.7 * step(random), 0.3 * aside(random), 0);
+      }
+    }
+    const Centreline here = centreline_between(lines[0], lines[1]);
+    for (Line3& line : lines) {
+      for (Eigen::Vector3d& point : line) point += Eigen::Vector3d(457'000, 5'428'000, 0);
+    }
+    const Centreline there = centreline_between(lines[0], lines[1]);
+    EXPECT_EQ(here.left_station_m, there.left_station_m) << i;
+    EXPECT_EQ(here.right_station_m, there.right_station_m) << i;
+    ASSERT_EQ(here.points.size(), there.points.size()) << i;
+  }
+}
+
 TEST(Centreline, AnOwnOneGivesTheBordersItsStations) {
   const Line3 left = {{0, 3, 0}, {4, 3, 0}, {10, 3, 0}}, right = {{0, 0, 0}, {10, 0, 0}};
   const Centreline centre = centreline_along({{0, 1, 0}, {10, 1, 0}}, left, right);

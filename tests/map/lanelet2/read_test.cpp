@@ -237,6 +237,37 @@ TEST(Lanelet2, ASpeedLimitElementHoldsOnTheLanesThatNameIt) {
   EXPECT_EQ(road_map.signals()[0].lanes, (std::vector{lane(road_map, id).id}));
 }
 
+/// As the library lanelet2 has it.
+TEST(Lanelet2, OfSeveralSpeedLimitsTheFirstNamedCountsAndOfOneItsSign) {
+  MadeLanelet2 made;
+  const auto limit = [&](const std::string& sign, const std::string& said) {
+    std::vector<std::pair<std::int64_t, std::string>> members;
+    if (!sign.empty()) {
+      members.emplace_back(
+          made.line({{5, 4}, {5, 5}}, {{"type", "traffic_sign"}, {"subtype", sign}}), "refers");
+    }
+    return made.relation(
+        members, {{"type", "regulatory_element"}, {"subtype", "speed_limit"}, {"sign_type", said}});
+  };
+  const auto lanelet = [&](double y_m, std::int64_t first, std::int64_t second) {
+    return made.lanelet(made.line({{0, y_m + 3}, {10, y_m + 3}}), made.line({{0, y_m}, {10, y_m}}),
+                        {{"subtype", "road"}},
+                        {{-first, "regulatory_element"}, {-second, "regulatory_element"}});
+  };
+  const std::int64_t at_30 = limit("de274-30", ""), at_70 = limit("de274-70", ""),
+                     of_sign = limit("de274-50", "90"), of_text = limit("", "90");
+  const std::int64_t a = lanelet(0, at_30, at_70), b = lanelet(10, at_70, at_30),
+                     c = lanelet(20, of_sign, of_sign), d = lanelet(30, of_text, of_text);
+  const RoadMap road_map = parse(made);
+  const auto kmph = [&](std::int64_t id) {
+    return 3.6 * lane(road_map, id).speed_limit_at_mps(0.0).value();
+  };
+  EXPECT_NEAR(kmph(a), 30.0, 1e-9);
+  EXPECT_NEAR(kmph(b), 70.0, 1e-9);
+  EXPECT_NEAR(kmph(c), 50.0, 1e-9);
+  EXPECT_NEAR(kmph(d), 90.0, 1e-9);
+}
+
 TEST(Lanelet2, LightsStopLinesAndUnknownRegulationsAreKept) {
   MadeLanelet2 made;
   const std::int64_t light = made.line({{12, 1}, {12, 2}}, {{"type", "traffic_light"}});

@@ -107,6 +107,17 @@ TEST(OpenDriveRules, DenyWinsOverAllowAndTheWholeLaneCounts) {
                    .has(Participant::bus));
 }
 
+TEST(OpenDriveRules, AccessThatChangesAlongALaneIsRemarked) {
+  const auto remarks = [](const std::string& from_m) {
+    const std::string access =
+        "<access sOffset=\"" + from_m + R"(" rule="deny" restriction="bus"/>)";
+    return tests::remarks_of(made_map(made_road(with_lanes("", made_lane(-1, access)))),
+                             "import.partial-access");
+  };
+  EXPECT_TRUE(remarks("0").empty());
+  EXPECT_EQ(remarks("20").size(), 1u);
+}
+
 TEST(OpenDriveRules, RestrictionsThatAreNoRoadUsersAreKeptInWords) {
   const MadeRoad road = with_lanes(
       "", made_lane(-1, R"(<access sOffset="5" rule="allow" restriction="autonomousTraffic"/>)"));

@@ -39,11 +39,11 @@ TEST(LaneStrips, AddUpToTheLengthAndAreaOfALane) {
   }
 }
 
-/// A lane of this width along an arc to the left that climbs.
-Lane arc_lane(double radius_m, double width_m, double slope) {
+/// A lane of this width along an arc of 1 rad to the left that climbs.
+Lane arc_lane(double radius_m, double width_m, double slope, int steps = 400) {
   std::vector<Eigen::Vector3d> left, right;
-  for (int i = 0; i <= 400; ++i) {
-    const double angle_rad = i * 0.0025;
+  for (int i = 0; i <= steps; ++i) {
+    const double angle_rad = static_cast<double>(i) / steps;
     const Eigen::Vector2d out(std::sin(angle_rad), -std::cos(angle_rad));
     const double z_m = slope * radius_m * angle_rad;
     const Eigen::Vector2d l = (radius_m - 0.5 * width_m) * out,
@@ -60,10 +60,33 @@ TEST(LaneStrips, MeasureAnArc) {
   const LaneMeasures measures = measure(arc_lane(50.0, 3.5, 0.04));
   EXPECT_NEAR(measures.area_m2, 0.5 * 1.0 * (51.75 * 51.75 - 48.25 * 48.25), 1e-3);
   EXPECT_NEAR(measures.mean_width_m, 3.5, 1e-5);
-  EXPECT_NEAR(measures.least_width_m, 3.5, 1e-9);
-  EXPECT_NEAR(measures.greatest_width_m, 3.5, 1e-9);
+  EXPECT_NEAR(measures.least_width_m, 3.5, 1e-5);
+  EXPECT_NEAR(measures.greatest_width_m, 3.5, 1e-5);
   EXPECT_NEAR(measures.greatest_slope, 0.04, 1e-6);
   EXPECT_NEAR(measures.greatest_curvature_per_m, 0.02, 1e-4);
+}
+
+TEST(LaneStrips, MeasureAnArcThatIsDrawnByFewPoints) {
+  for (const double radius_m : {20.0, 100.0}) {
+    for (const int steps : {4, 7, 25}) {
+      if (radius_m == 100.0 && steps == 4) continue;  // an arc would be 0.8 m off its chord
+      const LaneMeasures measures = measure(arc_lane(radius_m, 3.5, 0.0, steps));
+      EXPECT_NEAR(measures.greatest_curvature_per_m, 1.0 / radius_m, 0.13 / radius_m) << steps;
+      EXPECT_NEAR(measures.least_width_m, 3.5, 0.06) << radius_m << " " << steps;
+      EXPECT_NEAR(measures.greatest_width_m, 3.5, 0.06) << radius_m << " " << steps;
+    }
+  }
+}
+
+/// The points of a border lie where somebody set them, not beside those of the other.
+TEST(LaneStrips, MeasureTheWidthAcrossTheLane) {
+  Lane lane;
+  set_borders({{0, 3.5, 0}, {14, 3.5, 0}, {31, 3.5, 0}, {50, 3.5, 0}},
+              {{0, 0, 0}, {5, 0, 0}, {44, 0, 0}, {50, 0, 0}}, lane);
+  const LaneMeasures measures = measure(lane);
+  EXPECT_NEAR(measures.least_width_m, 3.5, 1e-9);
+  EXPECT_NEAR(measures.greatest_width_m, 3.5, 1e-9);
+  EXPECT_NEAR(measures.mean_width_m, 3.5, 1e-9);
 }
 
 TEST(MapStats, EveryTableAddsUpToTheWhole) {

@@ -41,11 +41,11 @@ const std::vector<Read> kLanelet2 = {
     {"autowarefoundation+autoware_core/intersection.osm", "geometry.kink 10"},
     // A border that steps back 5 cm at lanelet 6309; nodes 12097, 11927, 12253 beside others.
     {"autowarefoundation+autoware_core/road_shoulder.osm",
-     "geometry.fold 1, geometry.kink 5, geometry.tight-bend 16, lanelet2.unshared-border 3"},
+     "geometry.fold 1, geometry.kink 5, geometry.tight-bend 11, lanelet2.unshared-border 3"},
     {"autowarefoundation+autoware_core/vm_03_left_hand.osm",
      "geometry.kink 1, lanelet2.short-way 1"},
     {"fzi-forschungszentrum-informatik+Lanelet2/mapping_example.osm",
-     "geometry.kink 35, geometry.self-intersection 1, geometry.tight-bend 3, "
+     "geometry.kink 35, geometry.self-intersection 1, geometry.tight-bend 1, "
      "lanelet2.unshared-border 1, lanelet2.unused-regulation 1"},
 };
 
@@ -100,9 +100,9 @@ const std::vector<Read> kOpenDrive = {
 const std::vector<Read> kArgoverse = {
     {"log_map_archive_0a1e6f0a-1817-4a98-b02e-db8c9327d151.json", "geometry.kink 3"},
     {"log_map_archive_adcf7d18-0510-35b0-a2fa-b4cea13a6d76____PIT_city_57819.json",
-     "geometry.kink 23, geometry.tight-bend 1, link.unreachable 6"},
+     "geometry.kink 23, link.unreachable 6"},
     {"7fab2350/map/log_map_archive_7fab2350-7eaf-3b7e-a39d-6937a4c1bede____PIT_city_47896.json",
-     "geometry.kink 22, geometry.slope-jump 5, geometry.tight-bend 9"},
+     "geometry.kink 22, geometry.slope-jump 5, geometry.tight-bend 5"},
 };
 
 void expect_read(const std::filesystem::path& folder, const std::vector<Read>& maps) {

@@ -72,6 +72,21 @@ TEST(BatchFaults, KeepsTwoRunsOutOfOneFolder) {
   EXPECT_THAT(second.err, HasSubstr("another run is at work in it"));
 }
 
+TEST(BatchFaults, WritesThroughNoLinkInItsFolder) {
+  const TemporaryFolder inputs, victim;
+  const std::string jobs = inputs.write("jobs.jsonl", audit_jobs(inputs, 1));
+  const std::string foreign = victim.write("foreign", "mine");
+  for (const char* name : {"results.jsonl", "summary.json", "index.html", "timings.jsonl"}) {
+    const TemporaryFolder folder;
+    folder.write("unfinished", "");
+    std::filesystem::create_symlink(foreign, folder / name);
+    const ProgramRun run = batch(jobs, folder.path());
+    EXPECT_EQ(run.status, 3) << name;
+    EXPECT_THAT(run.err, HasSubstr(std::string(name) + ": is a link"));
+    EXPECT_EQ(bytes_of(foreign), "mine") << name;
+  }
+}
+
 TEST(BatchFaults, MakesACrashOneFailedLineAndRunsItAgain) {
   const TemporaryFolder inputs, folder, calm;
   const std::string jobs = inputs.write("jobs.jsonl", audit_jobs(inputs, 60));

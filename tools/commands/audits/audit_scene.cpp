@@ -6,6 +6,7 @@
 #include <iostream>
 #include <utility>
 
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/occupancy/octree/tiled_occupancy.h"
 #include "roadbed/planning/rules/rule_audit.h"
 #include "roadbed/tools/cli/build_id.h"
@@ -129,7 +130,7 @@ AuditSurroundings surroundings_of(const AuditedDrive& audited, const AuditScene&
     page.occupied =
         occupied_in(*scene.occupancy, scene.question.heights(audited.audit.ground), box);
     const std::filesystem::path& file = scene.asked.occupancy_file();
-    const bool is_bag = std::filesystem::is_directory(file) && !map::is_tiled_occupancy(file);
+    const bool is_bag = map::is_folder(file) && !map::is_tiled_occupancy(file);
     if (!file.empty() && !is_bag) {
       page.sources.push_back(source("occupancy", hashed_once(scene, file)));
     }
@@ -142,7 +143,7 @@ AuditSurroundings surroundings_of(const AuditedDrive& audited, const AuditScene&
     page.sources.push_back(source("map", hashed_once(scene, scene.asked.map_file())));
   }
   if (audited.road) add_road(*audited.road, page);
-  if (!scene.drive_file.empty() && !std::filesystem::is_directory(scene.drive_file)) {
+  if (!scene.drive_file.empty() && !map::is_folder(scene.drive_file)) {
     page.sources.push_back(source("trajectory", hashed_input(scene.drive_file)));
   }
   return page;

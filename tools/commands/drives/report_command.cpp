@@ -52,7 +52,7 @@ void collect(const nlohmann::json& value, const std::string& name, Metrics& metr
 }
 
 Metrics read_metrics(const fs::path& run) {
-  const fs::path file = fs::is_directory(run) ? run / "metrics.json" : run;
+  const fs::path file = map::is_folder(run) ? run / "metrics.json" : run;
   const nlohmann::json document = parse_json_strictly(map::read_file(file), map::input_name(file));
   Metrics metrics;
   if (document.is_object()) {

@@ -198,8 +198,7 @@ class SimulateCommand : public Command {
     read_changes();
     std::optional<NoPipeSignal> no_signal;  // of a planner that ends
     if (!choice_.planner_command.empty()) no_signal.emplace();
-    return fs::is_directory(scenario_file_) ? run_folder(streams, common)
-                                            : run_one(streams, common);
+    return map::is_folder(scenario_file_) ? run_folder(streams, common) : run_one(streams, common);
   }
 
  private:

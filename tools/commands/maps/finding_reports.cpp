@@ -187,7 +187,7 @@ std::string findings_json(const FindingReport& report) {
   Json document = {{"findings", std::move(list)}, {"suppressed", std::move(suppressed)}};
   if (report.baseline) {
     document["gone"] = Json::array();
-    for (const KnownFinding& gone : report.baseline->gone) {
+    for (const Finding& gone : report.baseline->gone) {
       document["gone"].push_back(
           {{"rule", gone.rule},
            {"autoware_issue", gone.autoware_issue.empty() ? Json() : Json(gone.autoware_issue)},

@@ -94,7 +94,7 @@ std::string detail_lines(const FindingReport& report, const std::string& file, c
 std::string gone_lines(const FindingReport& report) {
   std::string text;
   if (!report.baseline) return text;
-  for (const KnownFinding& gone : report.baseline->gone) {
+  for (const Finding& gone : report.baseline->gone) {
     text += fmt::format("gone: {} [{}{}{}]\n", gone.element, gone.rule,
                         gone.autoware_issue.empty() ? "" : " ", gone.autoware_issue);
   }
@@ -114,6 +114,9 @@ std::string last_line(const FindingReport& report, const std::vector<Group>& gro
   if (report.baseline) {
     text += fmt::format(" that are new, {} known, {} gone",
                         report.validation.findings.size() - told, report.baseline->gone.size());
+    if (const std::size_t unasked = report.baseline->unasked; unasked > 0) {
+      text += fmt::format(", {} not looked for", unasked);
+    }
   }
   if (!report.validation.suppressed.empty()) {
     text += fmt::format(", {} suppressed by the map", report.validation.suppressed.size());

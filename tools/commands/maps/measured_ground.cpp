@@ -57,7 +57,7 @@ Heights measured_ground(const std::vector<std::filesystem::path>& files,
     measured.extend(Eigen::Vector2d(box.max_in_source.head<2>()));
   };
   for (const std::filesystem::path& file : files) {
-    const bool is_folder = std::filesystem::is_directory(file);
+    const bool is_folder = map::is_folder(file);
     const std::string bytes = is_folder ? "" : map::read_file(file, map::most_unpacked_of_rows);
     if (is_folder || map::is_occupancy_file(bytes)) {
       octrees.push_back(map::open_occupancy(file));

@@ -29,7 +29,7 @@ struct Surroundings {
 };
 
 std::optional<Surroundings> surroundings_of(std::string_view text) {
-  constexpr double kMost_m = 1e6;
+  constexpr double kLeast_m = 1e-3, kMost_m = 1e6;
   constexpr std::string_view of_lane = "lane:", of_route = "route:";
   const std::size_t comma = text.rfind(',');
   const bool is_route = text.starts_with(of_route);
@@ -46,7 +46,7 @@ std::optional<Surroundings> surroundings_of(std::string_view text) {
   const char* end = number.data() + number.size();
   const auto [rest, error] = std::from_chars(number.data(), end, found.distance_m);
   const bool fits = error == std::errc() && std::string_view(rest, end) == "m" &&
-                    found.distance_m > 0.0 && found.distance_m <= kMost_m;
+                    found.distance_m >= kLeast_m && found.distance_m <= kMost_m;
   return fits && !named.empty() ? std::optional(found) : std::nullopt;
 }
 
@@ -122,7 +122,7 @@ void RegionOption::declare(Arguments& arguments, const std::string& what) {
       .checked([](const std::string& text) {
         return surroundings_of(text)
                    ? ""
-                   : "is not lane:NAME,500m or route:F.json,30m, of at most 1000000 m";
+                   : "is not lane:NAME,500m or route:F.json,30m, of 0.001 to 1000000 m";
       })
       .may_read([](const std::string& text) {
         const auto asked = surroundings_of(text);

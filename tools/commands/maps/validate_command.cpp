@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/map/validate_file.h"
@@ -31,7 +32,7 @@ std::string pattern_fault(const std::string& pattern) {
   const bool fits_one = std::ranges::any_of(
       catalogue, [&](const auto& rule) { return map::validation::fits(pattern, rule); });
   if (fits_one) return {};
-  if (std::filesystem::exists(pattern)) return "MAP has to be named before it";
+  if (map::is_there(pattern)) return "MAP has to be named before it";
   return fmt::format("no rule is called \"{}\"; see: roadbed validate --rules",
                      map::one_line(pattern));
 }
@@ -110,7 +111,7 @@ class ValidateCommand : public Command {
       options_.min_tagged_speed_kmph = speed_range_kmph_[0];
       options_.max_tagged_speed_kmph = speed_range_kmph_[1];
     }
-    std::vector<KnownFinding> baseline;
+    std::vector<map::validation::Finding> baseline;
     if (!baseline_.empty()) baseline = read_baseline(baseline_);
     const Validation validation = map::validate_file(input_, options_, source_);
     if (!validation.refusal.empty()) fmt::print(streams.err, "roadbed: {}\n", validation.refusal);
@@ -121,7 +122,8 @@ class ValidateCommand : public Command {
     report.is_complete = all_;
     report.choice = options_.choice;
     if (!baseline_.empty()) {
-      report.baseline = compare_with_baseline(validation.findings, std::move(baseline));
+      report.baseline =
+          compare_with_baseline(validation.findings, std::move(baseline), options_.choice);
     }
     const std::string name = map::one_line(input_.filename().string());
     streams.out << (json_ ? findings_json(report) : findings_text(report, name));

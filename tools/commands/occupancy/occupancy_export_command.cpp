@@ -141,7 +141,7 @@ class OccupancyExportCommand : public Command {
 
   Points points_of_input() const {
     Points points;
-    if (!std::filesystem::is_directory(input_)) {
+    if (!map::is_folder(input_)) {
       const std::string bytes = map::read_file(input_, map::most_unpacked_of_rows);
       if (!map::is_occupancy_file(bytes)) {
         points.cloud = map::point_cloud_of(input_, bytes);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 #include <stdexcept>
@@ -170,6 +171,56 @@ std::vector<Vector2d> ends(pugi::xml_node geometry) {
   const auto piece = plan_piece(geometry);
   return {piece.start.position(),
           geometry::plan_point(piece, piece.s_m + piece.length_m).pose.position()};
+}
+
+std::string straight_road_xml(const std::string& elevations, const std::string& objects) {
+  return R"(<OpenDRIVE><header revMajor="1" revMinor="7"/><road id="1" length="100" junction="-1">
+    <planView><geometry s="0" x="0" y="0" hdg="0" length="100"><line/></geometry></planView>
+    <elevationProfile>)" +
+         elevations + R"(</elevationProfile><lanes><laneSection s="0"><center><lane id="0"
+    type="none"/></center><right><lane id="-1" type="driving"><width sOffset="0" a="3" b="0" c="0"
+    d="0"/></lane></right></laneSection></lanes><objects>)" +
+         objects + "</objects></road></OpenDRIVE>";
+}
+
+TEST(Transform, LiftsARoadAlsoBeforeItsFirstElevation) {
+  const std::string bytes = straight_road_xml(R"(<elevation s="10" a="2" b="0" c="0" d="0"/>)", "");
+  const Edited moved =
+      transform(bytes, "a.xodr", {.motion = {.shift_m = {0, 0, 5}}, .to = {}, .crs = {}});
+  const RoadMap after = parse_map(moved.bytes, "b.xodr");
+  const LaneLine& line = after.lanes().begin()->left;
+  EXPECT_NEAR(line.z_m.front(), 5.0, 1e-9);
+  EXPECT_NEAR(line.z_m.back(), 7.0, 1e-9);
+}
+
+TEST(Transform, DeclaresTheEncodingThatItWrites) {
+  const auto moved = [](const std::string& encoding, const std::string& umlaut) {
+    std::string bytes = straight_road_xml("", "<object id=\"" + umlaut + "\" s=\"0\" t=\"5\"/>");
+    bytes = "<?xml version=\"1.0\" encoding=\"" + encoding + "\"?>\n" + bytes;
+    return transform(bytes, "a.xodr", {.motion = kMotion, .to = {}, .crs = {}}).bytes;
+  };
+  for (const auto& [read, umlaut, written, as] :
+       {std::array{"ISO-8859-1", "\xe4", "UTF-8", "ä"},
+        {"US-ASCII", "&#228;", "UTF-8", "ä"},
+        {"utf-8", "ä", "utf-8", "ä"},
+        {"windows-1252", "\xe4", "windows-1252", "\xe4"}}) {
+    const std::string text = moved(read, umlaut);
+    EXPECT_NE(text.find("encoding=\"" + std::string(written) + "\""), std::string::npos) << read;
+    EXPECT_NE(text.find("id=\"" + std::string(as) + "\""), std::string::npos) << read;
+  }
+}
+
+TEST(Transform, KeepsTheCopiesOfARepeatedObject) {
+  const std::string bytes = straight_road_xml(
+      "", R"(<object id="1" s="0" t="5"><repeat s="0" length="90" distance="10" tStart="5" tEnd="5"
+      heightStart="1" heightEnd="1" zOffsetStart="0" zOffsetEnd="0"/></object>)");
+  const Edited there = transform(
+      bytes, "a.xodr",
+      {.motion = {}, .to = "EPSG:3857", .crs = "+proj=tmerc +lat_0=48 +lon_0=9 +units=m"});
+  const XmlDocument xml(there.bytes, "b.xodr");
+  const auto repeat = xml.root().select_node("road/objects/object/repeat").node();
+  EXPECT_GT(number(repeat, "length"), 100.0);  // Mercator at 48 degrees
+  EXPECT_NEAR(number(repeat, "length") / number(repeat, "distance"), 9.0, 1e-6);
 }
 
 // Scales change along a road, most in systems that are not of equal angles.
