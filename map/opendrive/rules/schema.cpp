@@ -3,204 +3,183 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
+#include <optional>
+#include <string>
 #include <string_view>
-#include <unordered_map>
+#include <utility>
+#include <vector>
 
+#include "roadbed/map/opendrive/rules/schema_grammar.h"
 #include "roadbed/map/opendrive/rules/source.h"
 
-// What every schema of OpenDRIVE 1.4 to 1.8 asks for of the elements that carry the road network.
+// What the schema of the file's revision, 1.4 to 1.8, asks for. What the program needs is asked of
+// files of every revision.
 
 namespace roadbed::map::opendrive::rules {
 namespace {
 
 constexpr std::string_view kValidSchema = "asam.net:xodr:1.0.0:xml.valid_schema";
 
-enum class Type { text, number, whole };
-
-struct Attribute {
-  std::string_view name;
-  Type type = Type::number;
-};
-
-struct Element {
-  std::string_view parent, name;
-  std::vector<Attribute> required;
-  std::vector<std::string_view> children;  ///< of each at least one
-};
-
-std::vector<Attribute> cubic(std::string_view s_attribute) {
-  return {{s_attribute}, {"a"}, {"b"}, {"c"}, {"d"}};
+std::string_view trim(std::string_view text) {
+  const std::size_t from = text.find_first_not_of(" \t\r\n");
+  if (from == text.npos) return {};
+  return text.substr(from, text.find_last_not_of(" \t\r\n") - from + 1);
 }
 
-const std::vector<Element>& elements() {
-  static const std::vector<Element> all = {
-      {"OpenDRIVE", "road", {{"id", Type::text}, {"length"}}, {"planView", "lanes"}},
-      {"road", "planView", {}, {"geometry"}},
-      {"planView", "geometry", {{"s"}, {"x"}, {"y"}, {"hdg"}, {"length"}}, {}},
-      {"geometry", "arc", {{"curvature"}}, {}},
-      {"geometry", "spiral", {{"curvStart"}, {"curvEnd"}}, {}},
-      {"geometry", "poly3", {{"a"}, {"b"}, {"c"}, {"d"}}, {}},
-      {"geometry",
-       "paramPoly3",
-       {{"aU"}, {"bU"}, {"cU"}, {"dU"}, {"aV"}, {"bV"}, {"cV"}, {"dV"}},
-       {}},
-      {"elevationProfile", "elevation", cubic("s"), {}},
-      {"lateralProfile", "superelevation", cubic("s"), {}},
-      {"lanes", "laneOffset", cubic("s"), {}},
-      {"road", "lanes", {}, {"laneSection"}},
-      {"lanes", "laneSection", {{"s"}}, {"center"}},
-      {"left", "lane", {{"id", Type::whole}, {"type", Type::text}}, {}},
-      {"right", "lane", {{"id", Type::whole}, {"type", Type::text}}, {}},
-      {"center", "lane", {{"id", Type::whole}}, {}},
-      {"lane", "width", cubic("sOffset"), {}},
-      {"lane", "border", cubic("sOffset"), {}},
-      {"lane", "roadMark", {{"sOffset"}, {"type", Type::text}}, {}},
-      {"lane", "speed", {{"sOffset"}, {"max"}}, {}},
-      {"road", "type", {{"s"}, {"type", Type::text}}, {}},
-      {"OpenDRIVE", "junction", {{"id", Type::text}}, {}},
-      {"junction", "connection", {{"id", Type::text}}, {}},
-      {"connection", "laneLink", {{"from", Type::whole}, {"to", Type::whole}}, {}},
-      {"signals", "signal", {{"id", Type::text}, {"s"}, {"t"}}, {}},
-      {"signals", "signalReference", {{"id", Type::text}, {"s"}, {"t"}}, {}},
-      {"objects", "object", {{"s"}, {"t"}}, {}},
-      {"signal", "validity", {{"fromLane", Type::whole}, {"toLane", Type::whole}}, {}},
-      {"OpenDRIVE", "controller", {{"id", Type::text}}, {}},
-      {"controller", "control", {{"signalId", Type::text}}, {}},
-  };
-  return all;
-}
-
-struct Choice {
-  std::string_view element, attribute;
-  std::vector<std::string_view> values;
-};
-
-const std::vector<Choice>& choices() {
-  static const std::vector<Choice> all = {
-      {"predecessor", "contactPoint", {"start", "end"}},
-      {"successor", "contactPoint", {"start", "end"}},
-      {"predecessor", "elementType", {"road", "junction"}},
-      {"successor", "elementType", {"road", "junction"}},
-      {"connection", "contactPoint", {"start", "end"}},
-      {"road", "rule", {"RHT", "LHT"}},
-      {"junction", "type", {"default", "common", "direct", "virtual", "crossing"}},
-      {"paramPoly3", "pRange", {"arcLength", "normalized"}},
-      {"lane", "level", {"true", "false", "1", "0"}},
-      {"lane", "direction", {"standard", "reversed", "both"}},
-      {"lane",
-       "type",
-       {"none",       "driving",        "stop",  "shoulder",      "biking", "sidewalk", "border",
-        "restricted", "parking",        "curb",  "bidirectional", "median", "special1", "special2",
-        "special3",   "tram",           "rail",  "roadWorks",     "entry",  "exit",     "offRamp",
-        "onRamp",     "connectingRamp", "bus",   "taxi",          "HOV",    "mwyEntry", "mwyExit",
-        "walking",    "slipLane",       "shared"}},
-  };
-  return all;
-}
-
-// Elements and attributes by name; names are few, so that a list under a hash is short.
-template <typename Entry>
-using ByName = std::unordered_map<std::string_view, std::vector<const Entry*>>;
-
-const ByName<Element>& elements_by_name() {
-  static const ByName<Element> table = [] {
-    ByName<Element> made;
-    for (const Element& element : elements()) made[element.name].push_back(&element);
-    return made;
-  }();
-  return table;
-}
-
-const ByName<Choice>& choices_by_element() {
-  static const ByName<Choice> table = [] {
-    ByName<Choice> made;
-    for (const Choice& choice : choices()) made[choice.element].push_back(&choice);
-    return made;
-  }();
-  return table;
-}
-
-bool is_whole(std::string_view text) {
+std::optional<double> whole_of(std::string_view text) {
+  text = trim(text);
+  if (text.starts_with('+')) text.remove_prefix(1);
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && !text.empty();
+  if (error != std::errc() || end != text.data() + text.size() || text.empty()) return {};
+  return value;
 }
 
-class Checker : public pugi::xml_tree_walker {
- public:
-  explicit Checker(const XmlDocument& xml) : xml_(xml) {}
+/// What a number outside its range is: "is less than 0".
+std::string_view miss_of(Range range) {
+  switch (range) {
+    case Range::any:
+      break;
+    case Range::not_negative:
+      return "is less than 0";
+    case Range::positive:
+      return "is not greater than 0";
+    case Range::negative:
+      return "is not less than 0";
+    case Range::zero:
+      return "is not 0";
+    case Range::share:
+      return "is not between 0 and 1";
+  }
+  return {};
+}
 
-  bool for_each(pugi::xml_node& node) override {
-    if (node.type() != pugi::node_element) return true;
-    const auto entries = elements_by_name().find(node.name());
-    if (entries != elements_by_name().end()) {
-      for (const Element* element : entries->second) {
-        if (element->parent == node.parent().name()) check(node, *element);
-      }
-    }
-    const auto choice = choices_by_element().find(node.name());
-    if (choice != choices_by_element().end()) {
-      for (const Choice* one : choice->second) check(node, *one);
-    }
-    return true;
+/// The last digit of the file's revision; 0 if it is none of 1.x.
+int minor_revision(const XmlDocument& xml) {
+  const auto header = xml.root().child("header");
+  if (xml.optional_integer(header, "revMajor") != 1) return 0;
+  return xml.optional_integer(header, "revMinor").value_or(0);
+}
+
+class Checker {
+ public:
+  explicit Checker(const XmlDocument& xml) : xml_(xml), grammar_(minor_revision(xml)) {}
+
+  std::vector<SchemaFault> run() {
+    check(xml_.root(), grammar_.root());
+    return std::move(faults_);
   }
 
-  std::vector<SchemaFault> take() { return std::move(faults_); }
-
  private:
-  void add(SchemaFault::Kind kind, pugi::xml_node node, std::string message) {
+  using Kind = SchemaFault::Kind;
+
+  void add(Kind kind, pugi::xml_node node, std::string message) {
     constexpr std::size_t kMost =
         2 * validation::Report::kMost;  // a file may be nothing but faults
     if (++count_[static_cast<std::size_t>(kind)] > kMost) return;
     faults_.push_back({kind, node, std::move(message)});
   }
 
-  void check(pugi::xml_node node, const Element& element) {
-    for (const Attribute& attribute : element.required) check(node, attribute);
-    for (const std::string_view child : element.children) {
-      if (node.child(child.data())) continue;
-      add(SchemaFault::Kind::missing_element, node,
-          fmt::format("has no <{}>, which it must have; add one", child));
+  void check(pugi::xml_node node, const ElementRule& element) {
+    pugi::xml_attribute next;  // files have attributes in the order of the table, mostly
+    for (const AttributeRule& rule : element.attributes) check_attribute(node, rule, next);
+    for (const ChildRule& rule : element.children) {
+      if (rule.is_required && !node.child(rule.name.c_str())) add_missing(node, rule);
     }
+    if (element.type == "geometry") check_curve(node);
+    std::size_t hint = 0;
+    for (const pugi::xml_node child : node.children()) {
+      if (child.type() != pugi::node_element) continue;
+      if (const ElementRule* rule = element.child(child.name(), hint)) check(child, *rule);
+    }
+  }
+
+  void add_missing(pugi::xml_node node, const ChildRule& rule) {
+    if (rule.is_vital) {
+      add(Kind::missing_element, node,
+          fmt::format("has no <{}>, which it must have; add one", rule.name));
+    } else {
+      add(Kind::incomplete, node,
+          fmt::format("has no <{}>, which revision 1.{} asks for; add one", rule.name,
+                      grammar_.minor()));
+    }
+  }
+
+  void check_curve(pugi::xml_node node) {
     const auto is_element = [](pugi::xml_node one) { return one.type() == pugi::node_element; };
-    if (element.name == "geometry" && !node.find_child(is_element)) {
-      add(SchemaFault::Kind::missing_element, node,
-          "has no curve; add a line, arc, spiral, poly3 or paramPoly3");
+    if (node.find_child(is_element)) return;
+    add(Kind::missing_element, node, "has no curve; add a line, arc, spiral, poly3 or paramPoly3");
+  }
+
+  void check_attribute(pugi::xml_node node, const AttributeRule& rule, pugi::xml_attribute& next) {
+    const pugi::xml_attribute found = node.attribute(rule.name.c_str(), next);
+    if (found) {
+      check_value(node, rule, found);
+    } else if (rule.is_vital) {
+      add(Kind::missing_attribute, node, fmt::format("has no attribute {}; add it", rule.name));
+    } else if (rule.is_required) {
+      add(Kind::incomplete, node,
+          fmt::format("has no attribute {}, which revision 1.{} asks for; add it", rule.name,
+                      grammar_.minor()));
     }
   }
 
-  void check(pugi::xml_node node, const Attribute& attribute) {
-    const pugi::xml_attribute found = node.attribute(attribute.name.data());
-    if (!found) {
-      add(SchemaFault::Kind::missing_attribute, node,
-          fmt::format("has no attribute {}; add it", attribute.name));
-    } else if ((attribute.type == Type::number &&
-                !xml_.optional_number(node, attribute.name.data())) ||
-               (attribute.type == Type::whole && !is_whole(found.value()))) {
-      add(SchemaFault::Kind::not_a_number, node,
-          fmt::format("{}=\"{}\" is no {}; correct it", attribute.name, found.value(),
-                      attribute.type == Type::whole ? "whole number" : "finite number"));
+  void check_value(pugi::xml_node node, const AttributeRule& rule, pugi::xml_attribute found) {
+    switch (rule.type.kind) {
+      case ValueType::Kind::text:
+        return;
+      case ValueType::Kind::filled:
+        if (*found.value() != '\0') return;
+        return add(Kind::invalid_value, node,
+                   fmt::format("{}=\"\" is empty; correct it", rule.name));
+      case ValueType::Kind::number:
+        return check_number(node, rule, found, number_of(node, found), "finite");
+      case ValueType::Kind::whole:
+        return check_number(node, rule, found, whole_of(found.value()), "whole");
+      case ValueType::Kind::choice:
+        return check_choice(node, *rule.type.choice, found);
     }
   }
 
-  void check(pugi::xml_node node, const Choice& choice) {
-    const pugi::xml_attribute found = node.attribute(choice.attribute.data());
-    if (!found || std::find(choice.values.begin(), choice.values.end(), found.value()) !=
-                      choice.values.end()) {
-      return;
+  std::optional<double> number_of(pugi::xml_node node, pugi::xml_attribute found) const {
+    return xml_.optional_number(node, found.name(), found);
+  }
+
+  void check_number(pugi::xml_node node, const AttributeRule& rule, pugi::xml_attribute found,
+                    std::optional<double> value, std::string_view kind) {
+    if (!value) {
+      add(rule.is_vital ? Kind::not_a_number : Kind::invalid_value, node,
+          fmt::format("{}=\"{}\" is no {} number; correct it", rule.name, found.value(), kind));
+    } else if (!is_in(rule.type.range, *value)) {
+      add(Kind::invalid_value, node,
+          fmt::format("{}=\"{}\" {}; correct it", rule.name, found.value(),
+                      miss_of(rule.type.range)));
     }
-    if (choice.element == "predecessor" || choice.element == "successor") {
-      if (std::string_view(node.parent().parent().name()) != "road") return;
-    }
-    add(SchemaFault::Kind::unknown_value, node,
-        fmt::format("{}=\"{}\" is no value of the standard; correct it", choice.attribute,
-                    found.value()));
+  }
+
+  void check_choice(pugi::xml_node node, const Choice& choice, pugi::xml_attribute found) {
+    const std::string_view value = found.value();
+    if (choice.has(value) || is_allowed_number(node, choice, found)) return;
+    const bool is_of_others =
+        std::find(choice.others.begin(), choice.others.end(), value) != choice.others.end();
+    add(Kind::unknown_value, node,
+        is_of_others ? fmt::format("{}=\"{}\" is no value of revision 1.{}; correct it",
+                                   found.name(), value, grammar_.minor())
+                     : fmt::format("{}=\"{}\" is no value of the standard; correct it",
+                                   found.name(), value));
+  }
+
+  bool is_allowed_number(pugi::xml_node node, const Choice& choice,
+                         pugi::xml_attribute found) const {
+    if (!choice.range) return false;
+    const std::optional<double> value = number_of(node, found);
+    return value && is_in(*choice.range, *value);
   }
 
   const XmlDocument& xml_;
+  const Grammar grammar_;
   std::vector<SchemaFault> faults_;
-  std::array<std::size_t, 4> count_{};  ///< by kind
+  std::array<std::size_t, SchemaFault::kKinds> count_{};  ///< by kind
 };
 
 /// "<width> of lane -1 of road 12".
@@ -228,7 +207,7 @@ void schema_faults(const Source& source, const validation::ValidateOptions&,
 
 using Kind = SchemaFault::Kind;
 
-constexpr std::array<SourceRule, 4> kSchemaRules = {{
+constexpr std::array<SourceRule, SchemaFault::kKinds> kSchemaRules = {{
     {{"schema.missing-element", kValidSchema, validation::Severity::error,
       "an element that the standard asks for is missing"},
      schema_faults<Kind::missing_element>},
@@ -241,16 +220,17 @@ constexpr std::array<SourceRule, 4> kSchemaRules = {{
     {{"schema.unknown-value", kValidSchema, validation::Severity::warning,
       "an attribute has none of the values that the standard knows"},
      schema_faults<Kind::unknown_value>},
+    {{"schema.incomplete", kValidSchema, validation::Severity::warning,
+      "what the file's revision asks for is missing, and the program does without"},
+     schema_faults<Kind::incomplete>},
+    {{"schema.invalid-value", kValidSchema, validation::Severity::warning,
+      "an attribute is out of its range, or no number where the program needs none"},
+     schema_faults<Kind::invalid_value>},
 }};
 
 }  // namespace
 
-std::vector<SchemaFault> find_schema_faults(const XmlDocument& xml) {
-  Checker checker(xml);
-  pugi::xml_node root = xml.root();
-  root.traverse(checker);
-  return checker.take();
-}
+std::vector<SchemaFault> find_schema_faults(const XmlDocument& xml) { return Checker(xml).run(); }
 
 std::span<const SourceRule> schema_rules() { return kSchemaRules; }
 

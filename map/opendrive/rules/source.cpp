@@ -148,7 +148,8 @@ void mark_told(std::vector<ImportDiagnostic>& remarks,
   std::set<long> lines;
   std::set<std::string> badly_linked;
   for (const validation::Finding& finding : findings) {
-    lines.insert(finding.line);
+    // What the program does without is nothing that the reader remarks.
+    if (finding.rule != "schema.incomplete") lines.insert(finding.line);
     if (is_about_links(finding)) badly_linked.insert(road_of(finding.element));
   }
   for (ImportDiagnostic& remark : remarks) {

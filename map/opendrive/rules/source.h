@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <span>
@@ -37,9 +38,18 @@ struct RoadSource {
 
 /// What a schema would complain of.
 struct SchemaFault {
-  enum class Kind { missing_element, missing_attribute, not_a_number, unknown_value } kind;
+  enum class Kind {
+    missing_element,
+    missing_attribute,
+    not_a_number,
+    unknown_value,
+    incomplete,
+    invalid_value
+  } kind;
   pugi::xml_node node;
   std::string message;
+
+  static constexpr std::size_t kKinds = 6;
 };
 
 /// A document, as the file lists it, with what rules look up in it.
@@ -69,7 +79,7 @@ struct SourceRule {
                 validation::Report& report);
 };
 
-/// What is missing, broken or unknown, by a table of the standard's elements.
+/// What is missing, broken or unknown, by the table of the standard's elements.
 std::vector<SchemaFault> find_schema_faults(const XmlDocument& xml);
 
 std::span<const SourceRule> schema_rules();         ///< elements, attributes, values

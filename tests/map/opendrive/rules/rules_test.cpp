@@ -30,6 +30,8 @@ std::vector<tests::Slip> slips() {
       {"schema.missing-attribute", R"(hdg="0" length="40")", R"(length="40")"},
       {"schema.not-a-number", arc, R"(<arc curvature="1e999"/>)"},
       {"schema.unknown-value", R"(type="shoulder")", R"(type="hard shoulder")"},
+      {"schema.incomplete", R"( junction="-1")", ""},
+      {"schema.invalid-value", R"(<offset x="0" y="0" z="0")", R"(<offset x="0" y="0" z="up")"},
       {"header.missing", R"(<header revMajor="1" revMinor="7" name="rules" version="1.00">
   <geoReference>+proj=tmerc +lat_0=48 +lon_0=9 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m</geoReference>
   <offset x="0" y="0" z="0" hdg="0"/>
