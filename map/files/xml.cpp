@@ -167,7 +167,8 @@ std::optional<double> XmlDocument::optional_number(pugi::xml_node node, const ch
 }
 
 std::optional<int> XmlDocument::optional_integer(pugi::xml_node node, const char* attribute) const {
-  const std::string_view written = trim(node.attribute(attribute).value());
+  std::string_view written = trim(node.attribute(attribute).value());
+  if (written.starts_with('+')) written.remove_prefix(1);
   int value = 0;
   const auto [end, error] = std::from_chars(written.data(), written.data() + written.size(), value);
   if (error != std::errc() || end != written.data() + written.size() || written.empty()) return {};

@@ -48,8 +48,7 @@ int open_nameless(const std::filesystem::path& folder) {
 
 void check_writable(const std::filesystem::path& file, bool force) {
   if (is_standard_stream(file)) return;
-  std::error_code error;
-  if (!std::filesystem::is_directory(folder_around(file), error)) {
+  if (!is_folder(folder_around(file))) {
     refuse_output(file, "cannot be written: its folder does not exist", "make the folder first");
   }
   const OutputPlace place = look_at_file(file);

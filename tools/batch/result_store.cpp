@@ -27,7 +27,7 @@ constexpr std::size_t kLongestResult = std::size_t{1} << 30;
 
 std::vector<fs::path> journals_in(const fs::path& folder) {
   std::vector<fs::path> journals;
-  if (std::error_code error; !fs::exists(folder, error)) return journals;
+  if (!map::is_there(folder)) return journals;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (map::is_file(entry.path()) && entry.path().extension() == ".jsonl") {
       journals.push_back(entry.path());

@@ -10,6 +10,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
@@ -219,9 +220,7 @@ std::filesystem::path tiles_index_file(const std::filesystem::path& folder) {
 }
 
 bool is_tiled_occupancy(const std::filesystem::path& path) {
-  std::error_code error;
-  return std::filesystem::is_directory(path, error) &&
-         std::filesystem::exists(tiles_index_file(path), error);
+  return is_folder(path) && is_there(tiles_index_file(path));
 }
 
 }  // namespace roadbed::map::occupancy::octree

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,21 +18,6 @@ namespace roadbed::map::opendrive::rules {
 namespace {
 
 constexpr std::string_view kValidSchema = "asam.net:xodr:1.0.0:xml.valid_schema";
-
-std::string_view trim(std::string_view text) {
-  const std::size_t from = text.find_first_not_of(" \t\r\n");
-  if (from == text.npos) return {};
-  return text.substr(from, text.find_last_not_of(" \t\r\n") - from + 1);
-}
-
-std::optional<double> whole_of(std::string_view text) {
-  text = trim(text);
-  if (text.starts_with('+')) text.remove_prefix(1);
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || text.empty()) return {};
-  return value;
-}
 
 /// What a number outside its range is: "is less than 0".
 std::string_view miss_of(Range range) {
@@ -135,7 +119,7 @@ class Checker {
       case ValueType::Kind::number:
         return check_number(node, rule, found, number_of(node, found), "finite");
       case ValueType::Kind::whole:
-        return check_number(node, rule, found, whole_of(found.value()), "whole");
+        return check_number(node, rule, found, xml_.optional_integer(node, found.name()), "whole");
       case ValueType::Kind::choice:
         return check_choice(node, *rule.type.choice, found);
     }
