@@ -59,7 +59,7 @@ class LogOddsJudge {
     std::memcpy(&value, rest_.data(), sizeof value);
     const auto there = static_cast<unsigned char>(rest_[sizeof value]);
     rest_.remove_prefix(kLogOddsBytes);
-    if (there == 0) return {value >= 0.0f ? BtPair::occupied : BtPair::free, value};
+    if (there == 0) return {pair_of_log_odds(value), value};
     const std::size_t at = judged_.bt.size(), place = judged_.first_leaf.size();
     judged_.bt.append(kPairsBytes, '\0');
     judged_.first_leaf.push_back(0);
@@ -158,37 +158,18 @@ CellState CompactOctree::at(const CellKey& key) const {
 }
 
 OctreeBytes CompactOctree::bt() const {
-  OctreeBytes bytes;
-  if (pairs_.empty()) return bytes;
-  const BtPair root = write_bt(0, bytes);
-  if (root != BtPair::inner) {
-    bytes.data.resize(kPairsBytes);
-    put_pairs(bytes.data, 0, root == BtPair::free ? kAllFree : kAllOccupied);
-    bytes.nodes = 8;
-  }
-  ++bytes.nodes;  // the root
-  return bytes;
+  if (pairs_.empty()) return {};
+  BtWriter writer;
+  const BtPair root = write_bt(0, writer);
+  return writer.take(root);
 }
 
-BtPair CompactOctree::write_bt(std::uint32_t node, OctreeBytes& bytes) const {
-  const std::size_t at = bytes.data.size();
-  bytes.data.append(kPairsBytes, '\0');
+BtPair CompactOctree::write_bt(std::uint32_t node, BtWriter& writer) const {
   std::uint32_t inner = first_inner_[node];
-  unsigned pairs = 0;
-  for (unsigned child = 0; child < 8; ++child) {
-    BtPair pair = pair_of(pairs_[node], child);
-    if (pair == BtPair::inner) pair = write_bt(inner++, bytes);
-    pairs |= static_cast<unsigned>(pair) << 2 * child;
-  }
-  if (pairs == kAllFree || pairs == kAllOccupied) {
-    bytes.data.resize(at);
-    return pair_of(pairs, 0);
-  }
-  put_pairs(bytes.data, at, pairs);
-  for (unsigned child = 0; child < 8; ++child) {
-    bytes.nodes += pair_of(pairs, child) != BtPair::unknown;
-  }
-  return BtPair::inner;
+  return writer.node([&](unsigned child) {
+    const BtPair pair = pair_of(pairs_[node], child);
+    return pair == BtPair::inner ? write_bt(inner++, writer) : pair;
+  });
 }
 
 OctreeBytes CompactOctree::ot() const {

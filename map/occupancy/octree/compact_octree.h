@@ -9,9 +9,10 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/map/occupancy/octree/bt_writer.h"
 #include "roadbed/map/occupancy/octree/cell_key.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
-#include "roadbed/map/occupancy/octree/octree_bytes.h"
+#include "roadbed/map/occupancy/octree/octree_data.h"
 #include "roadbed/map/occupancy/octree/scan_accumulator.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
@@ -116,7 +117,7 @@ class CompactOctree {
   };
   static CompactOctree read(Reading from);
   void read_node(Reading& from, std::size_t node);
-  BtPair write_bt(std::uint32_t node, OctreeBytes& bytes) const;
+  BtPair write_bt(std::uint32_t node, BtWriter& writer) const;
   float write_ot(std::uint32_t node, OctreeBytes& bytes) const;
 
   // Of inner nodes: what each child is, and the first of its children that are inner nodes; they

@@ -6,14 +6,18 @@
 #include <limits>
 #include <numbers>
 
+#include "roadbed/map/occupancy/octree/bt_writer.h"
 #include "roadbed/map/occupancy/octree/cell_key.h"
 #include "roadbed/map/occupancy/octree/compact_octree.h"
+#include "roadbed/map/occupancy/octree/ot_writer.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
 namespace {
 
-constexpr std::int64_t kPieceSide = 1024;  // cells of the cubes that sources are asked for
+constexpr std::int64_t kPieceSide = 1024;  // cells of the largest cubes that sources are asked for
+constexpr std::size_t kMostLeaves = 100'000;  // of such a cube; of more, its eighths are asked for
 constexpr std::int64_t kFilledSide = 8;
+constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 bool do_meet(const CellBox& a, const CellBox& b) { return !a.cut(b).empty(); }
@@ -48,11 +52,6 @@ MergedTree::MergedTree(std::span<const NamedOccupancy> sources, const MergeOptio
       wanted_(wanted),
       corner_(corner) {}
 
-OctreeBytes MergedTree::ot() {
-  node(cube(corner_, CompactOctree::kSide));
-  return writer_.take();
-}
-
 CellBox MergedTree::cube(const CellPlace& from, std::int64_t side) {
   return {from, {from[0] + side, from[1] + side, from[2] + side}};
 }
@@ -66,17 +65,23 @@ CellBox MergedTree::child_of(const CellBox& cube, std::size_t child) {
   return MergedTree::cube(from, half);
 }
 
-MergedTree::Leaves MergedTree::leaves_in(const CellBox& cube) const {
+// None if there are more than `most`.
+std::optional<MergedTree::Leaves> MergedTree::leaves_in(const CellBox& cube,
+                                                        std::size_t most) const {
   const CellBox wanted = wanted_.cut(cube);
   Box3 box = grid_.box_in_source(wanted);  // and a little less, that no neighbour is read
   box.min_in_source.array() += 0.25 * resolution_m_;
   box.max_in_source.array() -= 0.25 * resolution_m_;
   Leaves leaves;
+  bool is_all = true;
   for (const NamedOccupancy& source : sources_) {
-    for (const OccupancyCell& cell : source.occupancy->cells_in(box)) {
-      const CellBox cells = grid_.cells_of(cell).cut(wanted);
-      if (!cells.empty()) leaves.push_back({cells, static_cast<double>(cell.log_odds)});
-    }
+    source.occupancy->for_each_in(box, [&](const OccupancyCell& cell) {
+      const CellBox cells = is_all ? grid_.cells_of(cell).cut(wanted) : CellBox{};
+      if (cells.empty()) return;
+      is_all = leaves.size() < most;
+      leaves.push_back({cells, static_cast<double>(cell.log_odds)});
+    });
+    if (!is_all) return std::nullopt;
   }
   return leaves;
 }
@@ -109,50 +114,77 @@ float MergedTree::joined(const Leaves& leaves) const {
   return within_limits(sum);
 }
 
-MergedTree::Node MergedTree::node(const CellBox& cube) {
-  if (!do_meet(cube, wanted_)) return OtWriter::none();
-  if (side_of(cube) <= kPieceSide) return part(cube, leaves_in(cube));
-  return writer_.node([&](std::size_t child) { return node(child_of(cube, child)); });
-}
-
-MergedTree::Node MergedTree::part(const CellBox& cube, const Leaves& leaves) {
-  if (leaves.empty()) return OtWriter::none();
-  const Stays stays = stays_of(cube);
-  if (stays == Stays::nothing) return OtWriter::none();
-  const auto fills_it = [&](const Leaf& leaf) { return fills(leaf.cells, cube); };
-  if (stays == Stays::all && std::ranges::all_of(leaves, fills_it)) {
-    return writer_.leaf(joined(leaves));
-  }
-  if (side_of(cube) == kFilledSide) return block(cube, leaves, stays);
-  return writer_.node([&](std::size_t child) {
-    const CellBox below = child_of(cube, child);
-    Leaves meet;
-    std::ranges::copy_if(leaves, std::back_inserter(meet),
-                         [&](const Leaf& leaf) { return do_meet(leaf.cells, below); });
-    return part(below, meet);
-  });
-}
-
-MergedTree::Node MergedTree::block(const CellBox& cube, const Leaves& leaves, Stays stays) {
+std::array<float, 512> MergedTree::cells_of(const CellBox& block, const Leaves& leaves,
+                                            Stays stays) const {
   std::array<double, 512> sums;
   sums.fill(kNothing);
   for (const Leaf& leaf : leaves) {
-    for_each_cell(leaf.cells.cut(cube), [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-      add_to(sums[place_in(cube, x, y, z)], leaf.log_odds);
+    for_each_cell(leaf.cells.cut(block), [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+      add_to(sums[place_in(block, x, y, z)], leaf.log_odds);
     });
   }
   if (stays == Stays::part) {
-    for_each_cell({cube.from, {cube.to[0], cube.to[1], cube.from[2] + 1}},
+    for_each_cell({block.from, {block.to[0], block.to[1], block.from[2] + 1}},
                   [&](std::int64_t x, std::int64_t y, std::int64_t) {
-                    if (stays_of(MergedTree::cube({x, y, cube.from[2]}, 1)) == Stays::all) return;
-                    for (std::int64_t z = cube.from[2]; z < cube.to[2]; ++z) {
-                      sums[place_in(cube, x, y, z)] = kNothing;
+                    if (stays_of(MergedTree::cube({x, y, block.from[2]}, 1)) == Stays::all) return;
+                    for (std::int64_t z = block.from[2]; z < block.to[2]; ++z) {
+                      sums[place_in(block, x, y, z)] = kNothing;
                     }
                   });
   }
   std::array<float, 512> values;
   std::ranges::transform(sums, values.begin(), [&](double sum) { return within_limits(sum); });
-  return writer_.block(values);
+  return values;
 }
+
+/// Nodes as a writer has them.
+template <typename Writer>
+class MergedTree::Assembly {
+ public:
+  explicit Assembly(const MergedTree& tree) : tree_(tree) {}
+
+  OctreeBytes run() {
+    const Node root = node(cube(tree_.corner_, CompactOctree::kSide));
+    return writer_.take(root);
+  }
+
+ private:
+  using Node = typename Writer::Node;
+
+  Node node(const CellBox& cube) {
+    if (!do_meet(cube, tree_.wanted_)) return writer_.none();
+    if (side_of(cube) <= kPieceSide) {
+      const bool is_divided = side_of(cube) > kFilledSide;
+      const auto leaves = tree_.leaves_in(cube, is_divided ? kMostLeaves : kAny);
+      if (leaves) return part(cube, *leaves);
+    }
+    return writer_.node([&](std::size_t child) { return node(child_of(cube, child)); });
+  }
+
+  Node part(const CellBox& cube, const Leaves& leaves) {
+    if (leaves.empty()) return writer_.none();
+    const Stays stays = tree_.stays_of(cube);
+    if (stays == Stays::nothing) return writer_.none();
+    const auto fills_it = [&](const Leaf& leaf) { return fills(leaf.cells, cube); };
+    if (stays == Stays::all && std::ranges::all_of(leaves, fills_it)) {
+      return writer_.leaf(tree_.joined(leaves));
+    }
+    if (side_of(cube) == kFilledSide) return writer_.block(tree_.cells_of(cube, leaves, stays));
+    return writer_.node([&](std::size_t child) {
+      const CellBox below = child_of(cube, child);
+      Leaves meet;
+      std::ranges::copy_if(leaves, std::back_inserter(meet),
+                           [&](const Leaf& leaf) { return do_meet(leaf.cells, below); });
+      return part(below, meet);
+    });
+  }
+
+  const MergedTree& tree_;
+  Writer writer_;
+};
+
+OctreeBytes MergedTree::bt() const { return Assembly<BtWriter>(*this).run(); }
+
+OctreeBytes MergedTree::ot() const { return Assembly<OtWriter>(*this).run(); }
 
 }  // namespace roadbed::map::occupancy::octree

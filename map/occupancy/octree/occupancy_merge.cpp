@@ -12,7 +12,6 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/occupancy/octree/cell_key.h"
 #include "roadbed/map/occupancy/octree/cell_range.h"
-#include "roadbed/map/occupancy/octree/compact_octree.h"
 #include "roadbed/map/occupancy/octree/merged_tree.h"
 #include "roadbed/map/occupancy/octree/octree_bytes.h"
 #include "roadbed/map/occupancy/octree/tile_file.h"
@@ -49,10 +48,6 @@ std::optional<SeeThroughRemoval> all_seen_through(const std::vector<NamedOccupan
             : *removed;
   }
   return all;
-}
-
-OctreeBytes states_of(const OctreeBytes& log_odds) {
-  return log_odds.nodes == 0 ? OctreeBytes{} : CompactOctree::of_ot(log_odds.data).bt();
 }
 
 // Where an axis may be counted from: 0 if that does, else near the middle, at a multiple of a power
@@ -119,15 +114,15 @@ OccupancyMerge::Frame OccupancyMerge::frame_of_one_octree() const {
 
 OccupancyMap::File OccupancyMerge::file(bool as_log_odds) const {
   const Frame frame = frame_of_one_octree();
-  OctreeBytes data = MergedTree(sources_, options_, grid_, cells_, frame.corner()).ot();
-  if (!as_log_odds) data = states_of(data);
+  const MergedTree tree(sources_, options_, grid_, cells_, frame.corner());
+  OctreeBytes data = as_log_odds ? tree.ot() : tree.bt();
   const OctreeHeader header{.resolution_m = first_of(sources_).resolution_m(),
                             .nodes = data.nodes,
                             .origin_in_source = grid_.corner_in_source(frame.origin),
                             .crs = first_of(sources_).crs(),
                             .seen_through = seen_through_};
-  return {octree_header(as_log_odds ? OctreeForm::ot : OctreeForm::bt, header) + data.data,
-          data.nodes, seen_through_};
+  data.data.insert(0, octree_header(as_log_odds ? OctreeForm::ot : OctreeForm::bt, header));
+  return {std::move(data.data), data.nodes, seen_through_};
 }
 
 OccupancyMap::File OccupancyMerge::bt() const { return file(false); }
@@ -159,7 +154,7 @@ TilesIndex OccupancyMerge::tiles(std::int64_t side_cells, const Write& write) co
     const CellBox square{{x * side_cells, y * side_cells, -kHalf},
                          {(x + 1) * side_cells, (y + 1) * side_cells, kHalf}};
     const OctreeBytes data =
-        states_of(MergedTree(sources_, options_, grid_, square.cut(cells_), frame.corner()).ot());
+        MergedTree(sources_, options_, grid_, square.cut(cells_), frame.corner()).bt();
     if (data.nodes > 0) add_tile(index, x, y, data, seen_through_, write);
   }
   return index;

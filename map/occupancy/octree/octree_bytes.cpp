@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "roadbed/map/files/visible_text.h"
+#include "roadbed/map/occupancy/octree/bt_writer.h"
 #include "roadbed/map/occupancy/octree/ot_writer.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
@@ -57,76 +56,12 @@ class Assembly {
   Writer& writer_;
 };
 
-// The bits of a byte, each followed by a zero.
-constexpr std::array<std::uint16_t, 256> kApart = [] {
-  std::array<std::uint16_t, 256> apart{};
-  for (unsigned byte = 0; byte < 256; ++byte) {
-    for (unsigned bit = 0; bit < 8; ++bit) {
-      apart[byte] = static_cast<std::uint16_t>(apart[byte] | (byte >> bit & 1u) << 2 * bit);
-    }
-  }
-  return apart;
-}();
-
-class BtWriter {
- public:
-  using Node = BtPair;
-
-  static Node none() { return BtPair::unknown; }
-
-  // Two bytes say which children there are; the children's own follow.
-  template <typename Child>
-  Node node(const Child& child) {
-    const std::size_t at = bytes_.data.size();
-    bytes_.data.append(2, '\0');
-    unsigned pairs = 0;
-    for (unsigned i = 0; i < 8; ++i) pairs |= static_cast<unsigned>(child(i)) << 2 * i;
-    return close(at, pairs);
-  }
-
-  Node block(const CellBlock& block) {
-    return node([&](unsigned i) { return word(block.hit[i], block.free[i] & ~block.hit[i]); });
-  }
-
-  OctreeBytes take() {
-    bytes_.nodes += !bytes_.data.empty();  // the root
-    return std::move(bytes_);
-  }
-
- private:
-  Node word(std::uint64_t hit, std::uint64_t free) {
-    if ((hit | free) == 0) return BtPair::unknown;
-    if (hit == ~std::uint64_t{0}) return BtPair::occupied;
-    if (free == ~std::uint64_t{0}) return BtPair::free;
-    return node([&](unsigned i) { return leaves(hit >> 8 * i & 0xffu, free >> 8 * i & 0xffu); });
-  }
-
-  Node leaves(std::uint64_t hit, std::uint64_t free) {
-    const std::size_t at = bytes_.data.size();
-    bytes_.data.append(2, '\0');
-    return close(at, kApart[free] | static_cast<unsigned>(kApart[hit]) << 1);
-  }
-
-  Node close(std::size_t at, unsigned pairs) {
-    if (pairs == 0 || pairs == kAllFree || pairs == kAllOccupied) {
-      bytes_.data.resize(at);
-      return pair_of(pairs, 0);
-    }
-    bytes_.data[at] = static_cast<char>(pairs & 0xffu);
-    bytes_.data[at + 1] = static_cast<char>(pairs >> 8);
-    for (; pairs != 0; pairs >>= 2) bytes_.nodes += (pairs & 3u) != 0;
-    return BtPair::inner;
-  }
-
-  OctreeBytes bytes_;
-};
-
 template <typename Writer>
 OctreeBytes written(const CellBlocks& blocks) {
   Writer writer;
   const std::vector<CellBlocks::Placed> regions = blocks.regions();
-  Assembly<Writer>(writer).make(regions, 0);
-  return writer.take();
+  const auto root = Assembly<Writer>(writer).make(regions, 0);
+  return writer.take(root);
 }
 
 }  // namespace

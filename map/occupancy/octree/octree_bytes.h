@@ -14,15 +14,6 @@
 
 namespace roadbed::map::inline occupancy::inline octree {
 
-/// What two bits of a `.bt` say of a child. Eight of them, the first lowest, are an inner node.
-enum class BtPair : unsigned { unknown = 0, free = 1, occupied = 2, inner = 3 };
-
-constexpr BtPair pair_of(unsigned pairs, unsigned child) {
-  return static_cast<BtPair>(pairs >> 2 * child & 3u);
-}
-
-inline constexpr unsigned kAllFree = 0x5555, kAllOccupied = 0xaaaa;
-
 /// What stands before the data.
 struct OctreeHeader {
   double resolution_m;

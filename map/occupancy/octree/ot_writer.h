@@ -67,7 +67,7 @@ class OtWriter {
   Node block(const std::array<float, 512>& values) { return cells(values, 0, values.size()); }
   Node block(const CellBlock& block) { return this->block(*block.log_odds); }
 
-  OctreeBytes take() { return std::move(bytes_); }
+  OctreeBytes take(Node) { return std::move(bytes_); }
 
  private:
   static constexpr std::size_t kNodeBytes = sizeof(float) + 1;
