@@ -4,6 +4,7 @@
 
 #include <GeographicLib/TransverseMercator.hpp>
 #include <GeographicLib/UTMUPS.hpp>
+#include <cmath>
 #include <stdexcept>
 
 namespace roadbed::map::inline files {
@@ -23,6 +24,10 @@ double origin_northing_m(const TransverseMercator& grid) {
 }
 
 }  // namespace
+
+bool TransverseMercator::reaches(const GeographicPoint& point) const {
+  return std::abs(std::remainder(point.longitude_deg - central_meridian_deg, 360.0)) <= 60.0;
+}
 
 Eigen::Vector2d TransverseMercator::forward(const GeographicPoint& point) const {
   double east_m = 0.0, north_m = 0.0;

@@ -20,8 +20,10 @@ struct TransverseMercator {
   double scale = 1.0;                   ///< along the central meridian
   double false_easting_m = 0.0, false_northing_m = 0.0;
 
-  /// Easting and northing [m] of a place whose latitude is −90 to 90. Good up to 60° from the
-  /// central meridian; finite beyond.
+  /// Whether a place is within 60° of the central meridian. Beyond, 10° further are 10¹⁸ m.
+  bool reaches(const GeographicPoint& point) const;
+
+  /// Easting and northing [m] of a place that it reaches, of latitude −90 to 90.
   Eigen::Vector2d forward(const GeographicPoint& point) const;
 
   /// The inverse of `forward`; longitudes are −180 to 180.

@@ -30,6 +30,10 @@ class Frame {
   }
 
   const std::string& crs() const { return crs_; }
+
+  bool reaches(const Eigen::Vector2d& position) const {
+    return !grid_ || grid_->reaches(geographic(position));
+  }
   Eigen::Vector2d to_source(const Eigen::Vector2d& position) const {
     return grid_ ? grid_->forward(geographic(position)) : position;
   }
@@ -62,7 +66,8 @@ void turn(geometry::Ring& ring, bool counter_clockwise) {
 
 class AreaBuilder {
  public:
-  AreaBuilder(const Frame& frame, RoadMapParts& parts) : frame_(frame), parts_(parts) {}
+  AreaBuilder(const std::string& name, const Frame& frame, RoadMapParts& parts)
+      : name_(name), frame_(frame), parts_(parts) {}
 
   void add(const FeatureRecord& feature) {
     Area area;
@@ -93,6 +98,7 @@ class AreaBuilder {
     for (std::size_t i = 0; i < record.rings.size(); ++i) {
       geometry::Ring ring;
       for (const Eigen::Vector2d& position : record.rings[i]) {
+        check_reach(position, element);
         ring.emplace_back(frame_.to_source(position) - parts_.origin_in_source);
       }
       if (i == 0)
@@ -111,6 +117,18 @@ class AreaBuilder {
     return polygon;
   }
 
+  void check_reach(const Eigen::Vector2d& position, const std::string& element) const {
+    if (frame_.reaches(position)) return;
+    throw InputError(
+        {.file = name_,
+         .element = element,
+         .found = fmt::format("longitude {} is over 60° from the UTM zone of the first position",
+                              position.x()),
+         .needed = "polygons of one region",
+         .remedy = "give each region a file of its own"});
+  }
+
+  const std::string& name_;
   const Frame& frame_;
   RoadMapParts& parts_;
 };
@@ -141,7 +159,7 @@ RoadMapParts read(const std::string& bytes, const std::string& name) {
   const Frame frame(document, *first);
   parts.crs = frame.crs();
   parts.origin_in_source = origin_near(frame.to_source(*first));
-  AreaBuilder builder(frame, parts);
+  AreaBuilder builder(name, frame, parts);
   for (const FeatureRecord& feature : document.features) builder.add(feature);
   if (parts.areas.empty()) refuse_empty(name, parts);
   return parts;

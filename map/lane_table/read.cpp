@@ -136,7 +136,7 @@ class Builder {
       for (Eigen::Vector3d& point : row.points) {
         if (table.in_degrees) check_degrees(row, point);
         if (table.in_degrees && is_first) grid = grid_at(point);
-        if (grid) point.head<2>() = grid->forward({point.y(), point.x()});
+        if (grid) point.head<2>() = metres_of(row, point, *grid);
         const bool fits = point.head<2>().cwiseAbs().maxCoeff() <= kFarthest_m &&
                           std::abs(point.z()) <= kHighest_m;
         if (!fits)
@@ -146,6 +146,15 @@ class Builder {
         point.head<2>() -= parts_.origin_in_source;
       }
     }
+  }
+
+  Eigen::Vector2d metres_of(const Row& row, const Eigen::Vector3d& degrees,
+                            const TransverseMercator& grid) const {
+    const GeographicPoint place{degrees.y(), degrees.x()};
+    if (grid.reaches(place)) return grid.forward(place);
+    refuse(fmt::format("row {}: longitude {} is over 60° from the UTM zone of the first place",
+                       row.id, degrees.x()),
+           "lanes of one region", "give each region a file of its own");
   }
 
   /// Widths and speeds are of metres. What PROJ does not know is left to whoever drew it.

@@ -178,9 +178,7 @@ void Frame::find_local_grid(std::span<const NodePlace> nodes, std::string_view m
 std::optional<Eigen::Vector2d> Frame::place(const NodePlace& node) const {
   if (local_ && node.is_local()) return Eigen::Vector2d(node.local_x_m, node.local_y_m);
   if (!grid_ || !is_geographic(node)) return {};
-  const double from_meridian_deg =
-      std::remainder(node.longitude_deg - grid_->central_meridian_deg, 360.0);
-  if (std::abs(from_meridian_deg) > 60.0) return {};
+  if (!grid_->reaches(geographic(node))) return {};
   return grid_->forward(geographic(node));
 }
 

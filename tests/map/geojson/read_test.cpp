@@ -141,6 +141,9 @@ TEST(GeoJsonSurface, UnusableFilesAreRefusedWithTheirPlace) {
               HasSubstr("number"));
   EXPECT_EQ(message_of(R"({"type":"Polygon","coordinates":[[[9,48],[9.1,48],[9,48.1],[9,48]]]})"),
             "accepted");
+  EXPECT_THAT(
+      message_of(R"({"type":"Polygon","coordinates":[[[9,48],[69.1,48],[9,48.1],[9,48]]]})"),
+      HasSubstr("feature 1, polygon 1: longitude 69.1 is over 60° from the UTM zone"));
   EXPECT_THAT(message_of(R"({"type":"Polygon","coordinates":[[[500000,5400000],[1,1],[2,1]]]})"),
               HasSubstr("no longitude and latitude"));
   EXPECT_THAT(message_of(in_metres(polygon("[[[0,0],[50,50],[50,0],[0,50],[0,0]]]"))),

@@ -217,6 +217,10 @@ TEST(LaneTable, WhatIsWrongIsSaidInOneLine) {
   EXPECT_THAT(refusal("{}", R"({"width_m":3})"), HasSubstr("no collection of features"));
   EXPECT_THAT(refusal(collection(feature("LineString", "[[0]]", "")), R"({"width_m":3})"),
               HasSubstr("feature 1: a position"));
+  const std::string far = R"({"type":"FeatureCollection","features":[)" +
+                          feature("LineString", "[[9,48],[99,48]]", R"("id":"a")") + "]}";
+  EXPECT_THAT(refusal(far, R"({"width_m":3})"),
+              HasSubstr("row a: longitude 99 is over 60° from the UTM zone"));
 }
 
 }  // namespace
