@@ -2,12 +2,33 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nanoflann.hpp>
+#include <numeric>
 #include <stdexcept>
-#include <utility>
+#include <tuple>
+#include <vector>
 
 namespace roadbed::geometry::inline index {
+namespace {
+
+// The first of each place, in their order: of those that are equally near a tree looks at all.
+std::vector<std::size_t> distinct(const std::vector<Eigen::Vector2d>& points) {
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
+    return std::tuple(points[a].x(), points[a].y(), a) <
+           std::tuple(points[b].x(), points[b].y(), b);
+  });
+  const auto is_same = [&](std::size_t a, std::size_t b) { return points[a] == points[b]; };
+  order.erase(std::unique(order.begin(), order.end(), is_same), order.end());
+  std::ranges::sort(order);
+  return order;
+}
+
+}  // namespace
+
 struct PointIndex::Tree {
   // What nanoflann asks of a set of points.
   struct PointSet {
@@ -26,19 +47,30 @@ struct PointIndex::Tree {
   using KdTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSet>,
                                                      PointSet, 2, std::size_t>;
 
-  explicit Tree(std::vector<Eigen::Vector2d> points)
-      : set{std::move(points)}, tree(2, set, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
+  explicit Tree(const std::vector<Eigen::Vector2d>& points)
+      : indices(distinct(points)),
+        set(set_of(points, indices)),
+        tree(2, set, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
+
+  static PointSet set_of(const std::vector<Eigen::Vector2d>& points,
+                         const std::vector<std::size_t>& indices) {
+    PointSet set;
+    for (const std::size_t i : indices) set.points.push_back(points[i]);
+    return set;
+  }
+
+  std::vector<std::size_t> indices;  // in the order of the constructor
   PointSet set;
   KdTree tree;
 };
 
-PointIndex::PointIndex(std::vector<Eigen::Vector2d> points) {
+PointIndex::PointIndex(const std::vector<Eigen::Vector2d>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite()) {
       throw std::invalid_argument(fmt::format("PointIndex: point {} is not finite", i));
     }
   }
-  tree_ = std::make_unique<const Tree>(std::move(points));
+  tree_ = std::make_unique<const Tree>(points);
 }
 
 PointIndex::~PointIndex() = default;
@@ -49,7 +81,7 @@ std::optional<PointIndex::Nearest> PointIndex::nearest(const Eigen::Vector2d& po
   std::size_t index = 0;
   double squared = 0.0;
   if (tree_->tree.knnSearch(point.data(), 1, &index, &squared) == 0) return std::nullopt;
-  return Nearest{index, std::sqrt(squared)};
+  return Nearest{tree_->indices[index], std::sqrt(squared)};
 }
 
 }  // namespace roadbed::geometry::index

@@ -12,13 +12,13 @@ namespace roadbed::geometry::inline index {
 class PointIndex {
  public:
   /// @throws std::invalid_argument if a point is not finite.
-  explicit PointIndex(std::vector<Eigen::Vector2d> points);
+  explicit PointIndex(const std::vector<Eigen::Vector2d>& points);
   ~PointIndex();
   PointIndex(PointIndex&&) noexcept;
   PointIndex& operator=(PointIndex&&) noexcept;
 
   struct Nearest {
-    std::size_t index;  ///< in the order of the constructor; of equally near points any
+    std::size_t index;  ///< as constructed; of equally near points any, of equal ones the first
     double distance_m;
   };
 

@@ -50,7 +50,7 @@ StaticObstacles::StaticObstacles(const std::vector<Obstacle>& obstacles) {
     gap_m_ *= 2.0;
   std::vector<Eigen::Vector2d> points;
   for (const Rectangle& body : bodies_) spread_points(body, gap_m_, points);
-  points_ = geometry::PointIndex(std::move(points));
+  points_ = geometry::PointIndex(points);
 }
 
 double StaticObstacles::distance_bound_m(const Eigen::Vector2d& point) const {

@@ -29,7 +29,7 @@ void find_gap(const RouteNetwork& network, const std::vector<std::uint32_t>& fro
               const std::vector<std::uint32_t>& to_goal, NoRouteExplanation& explanation) {
   std::vector<Eigen::Vector2d> starts;
   for (const std::uint32_t lane : to_goal) starts.push_back(network.lanes[lane].start_in_map);
-  const geometry::PointIndex index(std::move(starts));
+  const geometry::PointIndex index(starts);
   explanation.gap_m = std::numeric_limits<double>::infinity();
   for (const std::uint32_t lane : from_start) {
     const auto nearest = index.nearest(network.lanes[lane].end_in_map);

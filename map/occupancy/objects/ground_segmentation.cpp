@@ -94,7 +94,7 @@ GroundSegmentation segment_ground(const PointCloud& cloud, const GroundOptions& 
                       .needed = "some of it around every object",
                       .remedy = "allow steeper ground (--ground-slope), or name another cloud"});
   }
-  const geometry::PointIndex ground(std::move(places));
+  const geometry::PointIndex ground(places);
   GroundSegmentation found{{is_ground.begin(), is_ground.end()},
                            std::vector<float>(cloud.points.size())};
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {

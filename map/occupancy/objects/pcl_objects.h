@@ -24,8 +24,9 @@ using RoadbedPclGround = void(const float* xyz, std::size_t count,
                               const RoadbedPclGroundOptions* options, std::uint8_t* is_ground);
 RoadbedPclGround roadbed_pcl_ground;
 
-/// Sets `cluster` of each point to the number of its Euclidean cluster, or to -1 where that has
-/// fewer than `least` points.
+/// Sets `cluster` of each point to the number of its Euclidean cluster, counted as they first come,
+/// or to -1 where that has fewer than `least` points. Points are in one cluster where steps from
+/// point to point, none longer than the tolerance, lead from one to the other. O(n log n).
 using RoadbedPclClusters = void(const float* xyz, std::size_t count, double tolerance,
                                 std::size_t least, std::int32_t* cluster);
 RoadbedPclClusters roadbed_pcl_clusters;

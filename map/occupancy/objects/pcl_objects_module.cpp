@@ -8,7 +8,6 @@
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
 #include <pcl/segmentation/approximate_progressive_morphological_filter.h>
-#include <pcl/segmentation/extract_clusters.h>
 #include <pcl/segmentation/sac_segmentation.h>
 
 #include <algorithm>
@@ -67,22 +66,6 @@ void roadbed_pcl_ground(const float* xyz, std::size_t count, const RoadbedPclGro
   filter.extract(ground);
   std::fill_n(is_ground, count, std::uint8_t{0});
   for (const pcl::index_t i : ground) is_ground[i] = 1;
-}
-
-void roadbed_pcl_clusters(const float* xyz, std::size_t count, double tolerance, std::size_t least,
-                          std::int32_t* cluster) {
-  const Cloud::ConstPtr cloud = cloud_of(xyz, count);
-  pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
-  extraction.setClusterTolerance(tolerance);
-  extraction.setMinClusterSize(static_cast<pcl::uindex_t>(least));
-  extraction.setSearchMethod(tree_of(cloud));
-  extraction.setInputCloud(cloud);
-  std::vector<pcl::PointIndices> found;
-  extraction.extract(found);
-  std::fill_n(cluster, count, std::int32_t{-1});
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    for (const pcl::index_t i : found[k].indices) cluster[i] = static_cast<std::int32_t>(k);
-  }
 }
 
 void roadbed_pcl_normals(const float* xyz, std::size_t count, int neighbours,

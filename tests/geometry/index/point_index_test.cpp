@@ -29,9 +29,14 @@ TEST(PointIndex, FindsWhatALinearScanFinds) {
 
 TEST(PointIndex, OfNoPointsFindsNothing) { EXPECT_FALSE(PointIndex({}).nearest({0, 0})); }
 
-TEST(PointIndex, OfEqualPointsFindsOneOfThem) {
-  const PointIndex index(std::vector<Eigen::Vector2d>(100, {3.0, 4.0}));
-  EXPECT_NEAR(index.nearest({0, 0})->distance_m, 5.0, 1e-12);
+TEST(PointIndex, OfEqualPointsFindsTheFirst) {
+  std::vector<Eigen::Vector2d> points(100, {3.0, 4.0});
+  points.front() = {9.0, 9.0};
+  points.back() = {1.0, 0.0};
+  const PointIndex index(points);
+  EXPECT_EQ(index.nearest({4.0, 4.0})->index, 1u);
+  EXPECT_NEAR(index.nearest({4.0, 4.0})->distance_m, 1.0, 1e-12);
+  EXPECT_EQ(index.nearest({0.0, 0.0})->index, 99u);
 }
 
 TEST(PointIndex, RefusesPointsThatAreNotFinite) {
