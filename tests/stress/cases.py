@@ -112,8 +112,16 @@ CLOUD: Commands = [
     ("occupancy info", ["occupancy", "info", "IN"]),
     ("occupancy build", ["occupancy", "build", "IN", "-o", "out.bt", "--force"]),
 ]
+OBJECTS: Commands = [
+    ("occupancy objects", ["occupancy", "objects", "IN", "-o", "objects.csv", "--force"])
+]
 LOG: Commands = [("drive info", ["drive", "info", "IN"])]
 OCTREE: Commands = CLOUD + [
+    ("occupancy merge", ["occupancy", "merge", "IN", "IN", "-o", "both.bt", "--force"]),
+    (
+        "occupancy crop",
+        ["occupancy", "crop", "IN", "--heights=-1e4,1e4", "-o", "part.bt", "--force"],
+    ),
     (
         "audit",
         ["audit", "--occupancy", "IN", "--trajectory", "in.csv", "--unknown", "free"],
@@ -214,7 +222,8 @@ CASES = [
     Case("movers", inputs.movers, 1000, MOVERS),
     Case("points .xyz", inputs.xyz, 10000, CLOUD),
     Case("points .pcd", inputs.pcd_binary, 10000, CLOUD),
-    Case("points in one place", inputs.pcd_one_place, 100_000, CLOUD),
+    Case("points in one place", inputs.pcd_one_place, 100_000, CLOUD + OBJECTS),
+    Case("points above each other", inputs.pcd_column, 1000, CLOUD + OBJECTS),
     Case("compressed .pcd", inputs.pcd_bomb, 50_000, CLOUD),
     Case("packed log", inputs.log_bomb, 10_000_000, LOG),
     Case("log of huge chunks", inputs.log_chunks, 10_000, LOG),

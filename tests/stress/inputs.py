@@ -696,6 +696,16 @@ def pcd_one_place(folder: Path, n: int) -> Path:
     return written(folder / "in.pcd", pcd_header(n, "binary") + bytes(12 * n))
 
 
+def pcd_column(folder: Path, n: int) -> Path:
+    """A post of so many points on a floor."""
+    floor = [(0.5 * x, 0.5 * y, 0.0) for x in range(40) for y in range(40)]
+    points = [(5.0, 5.0, 10.0 * i / n) for i in range(n)] + floor
+    return written(
+        folder / "in.pcd",
+        pcd_header(len(points), "binary") + b"".join(struct.pack("<fff", *at) for at in points),
+    )
+
+
 def lzf_of_zeros(size: int) -> bytes:
     """References of 264 bytes each to the zero before them."""
     whole, rest = divmod(size - 1, 264)
