@@ -220,7 +220,7 @@ TEST(LaneTable, WhatIsWrongIsSaidInOneLine) {
   const std::string far = R"({"type":"FeatureCollection","features":[)" +
                           feature("LineString", "[[9,48],[99,48]]", R"("id":"a")") + "]}";
   EXPECT_THAT(refusal(far, R"({"width_m":3})"),
-              HasSubstr("row a: longitude 99 is over 60° from the UTM zone"));
+              HasSubstr("row 1: longitude 99 is over 60° from the UTM zone"));
 }
 
 }  // namespace
