@@ -20,7 +20,8 @@ struct TransverseMercator {
   double scale = 1.0;                   ///< along the central meridian
   double false_easting_m = 0.0, false_northing_m = 0.0;
 
-  /// Whether a place is within 60° of the central meridian. Beyond, 10° further are 10¹⁸ m.
+  /// Whether a place is within 60° of the central meridian: farther, lengths are over twice as
+  /// long, and a quarter of the equator away there is no finite place.
   bool reaches(const GeographicPoint& point) const;
 
   /// Easting and northing [m] of a place that it reaches, of latitude −90 to 90.

@@ -30,9 +30,10 @@ using Combine = double (*)(double, double);
 constexpr double kCell_m = 0.25;
 
 /// Leaves of several sizes around the middle of OctoMap's range, with all kinds of log-odds.
-octomap::OcTree random_tree(std::mt19937& random, int cells) {
+octomap::OcTree random_tree(std::mt19937& random, int cells, int least = 32740,
+                            int greatest = 32795) {
   octomap::OcTree tree(kCell_m);
-  std::uniform_int_distribution<int> place(32740, 32795), block(0, 3);
+  std::uniform_int_distribution<int> place(least, greatest), block(0, 3);
   std::uniform_real_distribution<float> value(-1.9f, 3.4f);
   const auto key = [](int x, int y, int z) {
     return octomap::OcTreeKey(static_cast<octomap::key_type>(x), static_cast<octomap::key_type>(y),
@@ -179,6 +180,15 @@ TEST_F(OccupancyMergeTest, OfOneIsItsFileAsBuildWritesIt) {
   std::mt19937 random(3);
   const OccupancyMap whole = moved(random_tree(random, 3000), {0, 0, 0}, true);
   const OccupancyMerge merge({{&whole, "a"}});
+  EXPECT_EQ(merge.bt().bytes, whole.to_bt());
+  EXPECT_EQ(merge.ot().bytes, whole.to_ot());
+}
+
+TEST_F(OccupancyMergeTest, OfACubeOfMoreLeavesThanAreReadAtOnceIsItsFile) {
+  std::mt19937 random(5);
+  const OccupancyMap whole = moved(random_tree(random, 300'000, 32768, 32847), {0, 0, 0}, true);
+  ASSERT_GT(whole.node_count(), 200'000u);
+  const OccupancyMerge merge({{&whole, "a"}, {&whole, "b"}});
   EXPECT_EQ(merge.bt().bytes, whole.to_bt());
   EXPECT_EQ(merge.ot().bytes, whole.to_ot());
 }
