@@ -14,7 +14,7 @@ using Count = std::pair<std::string, std::size_t>;
 struct Edited {
   std::string bytes;               ///< of the file; empty: nothing is left of it
   std::string reason;              ///< why nothing is left
-  std::vector<Count> counts;       ///< what was done, for the user, none of them 0
+  std::vector<Count> counts;       ///< what was done, or left out, for the user, none 0
   std::vector<std::string> notes;  ///< what else the user should know, a line each
 
   void count(const std::string& what, std::size_t many) {

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/map/edit/lane_links.h"
 #include "roadbed/map/edit/road_cut.h"
 #include "roadbed/map/edit/xml_edit.h"
 
@@ -63,6 +64,9 @@ void restore_position(pugi::xml_node signal) {
 }
 
 void restore_road(pugi::xml_node road) {
+  const RoadCut cut = road_cut(road);
+  if (cut.has_start()) restore_lane_links(end_section(road, false), "predecessor");
+  if (cut.has_end()) restore_lane_links(end_section(road, true), "successor");
   for (const auto signal : road.child("signals").children("signal")) restore_position(signal);
   pugi::xml_node memory = find_clip_memory(road);
   if (!memory) return;
@@ -82,7 +86,6 @@ void restore_road(pugi::xml_node road) {
       memory.remove_child(kept);
     }
   }
-  const RoadCut cut = road_cut(road);
   restore_list(road, cut, "signals");
   restore_list(road, cut, "objects");
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/map/edit/lane_links.h"
 #include "roadbed/map/edit/plan_cut.h"
 #include "roadbed/map/edit/xml_edit.h"
 
@@ -126,22 +127,6 @@ void cut_lane(pugi::xml_node lane, const Cut& cut) {
   }
 }
 
-void for_each_lane(pugi::xml_node section, const std::function<void(pugi::xml_node)>& f) {
-  for (const char* side : {"left", "center", "right"}) {
-    for (const auto lane : section.child(side).children("lane")) f(lane);
-  }
-}
-
-// @param between_sections  the cut is where two sections meet: nothing else knows these links.
-void take_lane_links(pugi::xml_node section, const char* which, bool between_sections) {
-  for_each_lane(section, [&](pugi::xml_node lane) {
-    for (const auto link : children(lane.child("link"), which)) {
-      if (between_sections) clip_memory(lane).append_copy(link);
-      link.parent().remove_child(link);
-    }
-  });
-}
-
 // Returns how many sections before the first one that stays are gone.
 int cut_sections(pugi::xml_node lanes, double length_m, const Cut& cut) {
   std::vector<pugi::xml_node> sections = children(lanes, "laneSection");
@@ -170,6 +155,7 @@ int cut_sections(pugi::xml_node lanes, double length_m, const Cut& cut) {
     if (cut.at_start) set_number(sections[i], "s", std::max(0.0, begin_m - cut.from_m));
   }
   if (kept.empty()) return gone;
+  // Of links between sections nothing else knows.
   if (cut.at_start) take_lane_links(kept.front(), "predecessor", starts_between);
   if (cut.at_end) take_lane_links(kept.back(), "successor", ends_between);
   return gone;

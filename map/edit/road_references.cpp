@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/map/edit/lane_links.h"
 #include "roadbed/map/edit/named_roads.h"
 #include "roadbed/map/edit/road_cut.h"
 #include "roadbed/map/edit/xml_edit.h"
@@ -379,7 +380,10 @@ class Settler {
       const auto end = link.child(is_successor ? "successor" : "predecessor");
       if (!end || settle_end(end, part, is_successor, changed)) continue;
       const bool at_cut = is_successor ? !part.cut.has_end() : !part.cut.has_start();
-      settled_.links += at_cut ? 0 : 1;
+      if (!at_cut) {  // where the cut is, they went with it
+        ++settled_.links;
+        take_lane_links(end_section(road, is_successor), end.name(), true);
+      }
       link.remove_child(end);
       changed = true;
     }

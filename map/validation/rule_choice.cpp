@@ -33,6 +33,12 @@ bool is_in(Profile profile, std::string_view rule, bool has_asam_rule) {
   return true;
 }
 
+/// ASAM's names may begin with their version, as they stand in the table of rules.
+bool fits_asam(std::string_view pattern, std::string_view name) {
+  if (name.empty()) return false;
+  return fits_pattern(pattern, name) || fits_pattern(pattern, without_asam_prefix(name));
+}
+
 template <typename Named>
 bool fits_any(const std::vector<std::string>& patterns, const Named& named) {
   return std::ranges::any_of(patterns,
@@ -66,9 +72,14 @@ bool fits_pattern(std::string_view pattern, std::string_view text) {
   return pattern.substr(next).find_first_not_of('*') == std::string_view::npos;
 }
 
+std::string_view without_asam_prefix(std::string_view name) {
+  constexpr std::string_view prefix = "asam.net:xodr:";
+  return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
+}
+
 bool fits(std::string_view pattern, const Finding& finding) {
   if (fits_pattern(pattern, finding.rule)) return true;
-  if (!finding.asam_rule.empty() && fits_pattern(pattern, finding.asam_rule)) return true;
+  if (fits_asam(pattern, finding.asam_rule)) return true;
   return !finding.autoware_issue.empty() &&
          (fits_pattern(pattern, finding.autoware_issue) ||
           fits_pattern(pattern, without_number(finding.autoware_issue)));
@@ -78,7 +89,7 @@ bool fits(std::string_view pattern, const RuleInfo& rule) {
   // The readers' remarks stand in the table as "import.…".
   if (rule.id == "import.…" && pattern.starts_with("import.")) return true;
   if (fits_pattern(pattern, rule.id)) return true;
-  if (!rule.asam_rule.empty() && fits_pattern(pattern, rule.asam_rule)) return true;
+  if (fits_asam(pattern, rule.asam_rule)) return true;
   if (rule.autoware_rule.empty()) return false;
   if (fits_pattern(pattern, rule.autoware_rule)) return true;
   constexpr int kMostIssues = 20;  // of one rule

@@ -21,8 +21,8 @@ enum class Profile {
 /// Which rules look at a map, and how grave their findings are. What keeps a file from being read,
 /// or what its reader mended, is in every profile.
 ///
-/// Patterns are rule ids ("geometry.gap"), ASAM's names of rules, Autoware's ("Lane.BorderSharing")
-/// or its issues ("Lane.BorderSharing-002"); `*` stands for any text, `?` for any letter.
+/// Patterns are ids ("geometry.gap"), ASAM's names ("1.0.0:xml.valid_schema"), Autoware's of rules
+/// ("Lane.BorderSharing") or issues ("Lane.BorderSharing-002"); `*`: any text, `?`: any letter.
 struct RuleChoice {
   std::optional<Profile> profile;     ///< none: planning, or all rules where some are named
   std::vector<std::string> only;      ///< no others than these; empty: all
@@ -47,6 +47,9 @@ bool fits(std::string_view pattern, const Finding& finding);
 
 /// Whether a pattern fits a rule, under any of its names, or an issue that it may find.
 bool fits(std::string_view pattern, const RuleInfo& rule);
+
+/// "1.0.0:xml.valid_schema" of "asam.net:xodr:1.0.0:xml.valid_schema".
+std::string_view without_asam_prefix(std::string_view name);
 
 /// Whether a text is what a pattern with `*` and `?` describes. O(pattern · text).
 bool fits_pattern(std::string_view pattern, std::string_view text);

@@ -45,14 +45,19 @@ class LaneletClipper {
         relation_stays_(document.relations.size(), false),
         way_stays_(document.ways.size(), false) {}
 
-  bool run(Edited& result) {
+  void run(Edited& result) {
     for (const std::uint32_t way : index_.ways_near(region_)) {
       spans_[way] = spans_inside(index_.line_of(way), region_);
     }
     for (const std::uint32_t i : index_.lanelets_near(region_)) {
       if (touches(index_.lanelets()[i])) keep(index_.lanelets()[i]);
     }
-    if (strips_.empty()) return false;
+    if (strips_.empty()) {
+      result.reason = "no lanelet of the map reaches into the region";
+      result.count("lines left out with it",
+                   std::ranges::count_if(spans_, [](const auto& spans) { return !spans.empty(); }));
+      return;
+    }
     keep_other_relations();
     force_matching();
     keep_ways();
@@ -67,7 +72,6 @@ class LaneletClipper {
     result.count("lanelets outside, left out", index_.lanelets().size() - strips_.size());
     result.count("lanelets without two usable borders, left out", index_.unusable());
     result.count("relations that lost members outside", thinned_);
-    return true;
   }
 
  private:
@@ -382,9 +386,7 @@ Clipper lanelet2_clipper(std::string bytes, const std::string& name, const ClipO
   const auto layout = std::make_shared<const OsmLayout>(*document);
   return [document, index, layout, options](const Region& region) {
     Edited result;
-    if (!LaneletClipper(*document, *index, *layout, region, options).run(result)) {
-      result.reason = "no lanelet of the map reaches into the region";
-    }
+    LaneletClipper(*document, *index, *layout, region, options).run(result);
     return result;
   };
 }

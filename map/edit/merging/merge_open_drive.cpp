@@ -66,6 +66,22 @@ OfKinds kinds_in_order(pugi::xml_node root) {
   return in_order;
 }
 
+/// What of a road's list has an id of its own: signals; objects, bridges and tunnels.
+std::vector<pugi::xml_node> named_in(pugi::xml_node road, const char* list) {
+  std::vector<pugi::xml_node> named;
+  for (const auto one : road.child(list).children()) {
+    const std::string_view name = one.name();
+    if (one.attribute("id") && !name.ends_with("Reference")) named.push_back(one);
+  }
+  return named;
+}
+
+/// Nothing names a bridge or a tunnel: two of one id in one map stay as they are.
+bool can_be_referred_to(pugi::xml_node one) {
+  const std::string_view name = one.name();
+  return name != "bridge" && name != "tunnel";
+}
+
 class Merger {
  public:
   Merger(pugi::xml_node root, const MergeOptions& options)
@@ -122,20 +138,13 @@ class Merger {
   void note_road(pugi::xml_node road) {
     last_[0] = road;
     parts_[road_cut(road).road].push_back(road);
-    origins_[text(road, "id")] = source_;
-    for (const auto signal : road.child("signals").children("signal")) {
-      signals_[text(signal, "id")].insert(road_cut(road).road);
-      signal_ids_.take(text(signal, "id"));
-    }
-    for (const auto object : road.child("objects").children("object")) {
-      objects_[text(object, "id")].insert(road_cut(road).road);
-      object_ids_.take(text(object, "id"));
-    }
+    note_ids(road);
   }
 
   // Roads, signals and whatever else has the id of something that is not the same.
   NewIds new_names(const Source& source, Merged& result) {
     ++source_;
+    maps_.push_back(source_);
     NewIds names;
     FreshIds roads;
     for (const auto& [id, parts] : parts_) roads.take(id);
@@ -155,24 +164,40 @@ class Merger {
         give("road", names.roads, roads, id);
       }
     }
-    for (const auto road : source.root().children("road")) {
-      const std::string id = road_cut(road).road;
-      name_inside(road.child("signals"), "signal", signals_, same.contains(id) ? id : "",
-                  [&](const std::string& one) { give("signal", names.signals, signal_ids_, one); });
-      name_inside(road.child("objects"), "object", objects_, same.contains(id) ? id : "",
-                  [&](const std::string& one) { give("object", names.objects, object_ids_, one); });
-    }
+    for (const std::string& id : same) is_of_one_map(origins_[text(parts_[id].front(), "id")]);
+    const auto name_inside = [&](const char* list, const UsersOfId& taken, FreshIds& ids,
+                                 NameChanges& to) {
+      for (const auto road : source.root().children("road")) {
+        for (const auto one : named_in(road, list)) ids.take(text(one, "id"));
+      }
+      for (const auto road : source.root().children("road")) {
+        const std::string road_id = road_cut(road).road;
+        for (const auto one : named_in(road, list)) {
+          const std::string id = text(one, "id");
+          const auto found = taken.find(id);
+          if (found == taken.end() || to.contains(id)) continue;
+          if (same.contains(road_id) && found->second.contains(road_id)) continue;
+          if (!can_be_referred_to(one) && are_of_this_map(found->second)) continue;
+          give(one.name(), to, ids, id);
+        }
+      }
+    };
+    name_inside("signals", signals_, signal_ids_, names.signals);
+    name_inside("objects", objects_, object_ids_, names.objects);
     for (std::size_t i = 1; i < kKinds.size(); ++i) name_others(source, i, result, names);
     return names;
   }
 
-  static void name_inside(pugi::xml_node list, const char* name, const UsersOfId& taken,
-                          const std::string& same_road,
-                          const std::function<void(const std::string&)>& give) {
-    for (const auto one : list.children(name)) {
-      const auto found = taken.find(text(one, "id"));
-      if (found != taken.end() && !found->second.contains(same_road)) give(text(one, "id"));
-    }
+  // Files of which one has a part of a road of the other are parts of one map.
+  void is_of_one_map(std::size_t source) {
+    const std::size_t to = maps_[source], from = maps_[source_];
+    std::replace(maps_.begin(), maps_.end(), from, to);
+  }
+
+  bool are_of_this_map(const std::set<std::string>& roads) {
+    return std::all_of(roads.begin(), roads.end(), [&](const auto& road) {
+      return maps_[origins_[text(parts_[road].front(), "id")]] == maps_[source_];
+    });
   }
 
   // What names something renamed is another thing, too.
@@ -240,12 +265,14 @@ class Merger {
   void note_ids(pugi::xml_node road) {
     const std::string id = road_cut(road).road;
     origins_[text(road, "id")] = source_;
-    for (const auto one : road.child("signals").children("signal")) {
-      signals_[text(one, "id")].insert(id);
-    }
-    for (const auto one : road.child("objects").children("object")) {
-      objects_[text(one, "id")].insert(id);
-    }
+    const auto note = [&](const char* list, UsersOfId& users, FreshIds& ids) {
+      for (const auto one : named_in(road, list)) {
+        users[text(one, "id")].insert(id);
+        ids.take(text(one, "id"));
+      }
+    };
+    note("signals", signals_, signal_ids_);
+    note("objects", objects_, object_ids_);
   }
 
   // Parts in order of their stations; each is put to the one before that it goes on from.
@@ -332,11 +359,12 @@ class Merger {
   pugi::xml_node root_;
   const MergeOptions& options_;
   OfKinds in_order_;
-  std::size_t source_ = 0;                                     // which of the files is being added
-  std::map<std::string, std::vector<pugi::xml_node>> parts_;   // of each whole road
-  std::map<std::string, std::size_t> origins_;                 // file of each road
-  std::array<pugi::xml_node, kKinds.size()> last_;             // behind which new ones stand
-  std::array<ById, kKinds.size()> by_id_;                      // of all kinds but roads
+  std::size_t source_ = 0;                                    // which of the files is being added
+  std::map<std::string, std::vector<pugi::xml_node>> parts_;  // of each whole road
+  std::vector<std::size_t> maps_ = {0};             // of each file, the first one of the same map
+  std::map<std::string, std::size_t> origins_;      // file of each road
+  std::array<pugi::xml_node, kKinds.size()> last_;  // behind which new ones stand
+  std::array<ById, kKinds.size()> by_id_;           // of all kinds but roads
   std::map<std::string, std::vector<pugi::xml_node>> others_;  // by name
   UsersOfId signals_, objects_;
   FreshIds signal_ids_, object_ids_;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/map/edit/lane_links.h"
 #include "roadbed/map/edit/plan_cut.h"
 #include "roadbed/map/edit/road_cut.h"
 #include "roadbed/map/edit/xml_edit.h"
@@ -137,20 +138,9 @@ void join_sections(pugi::xml_node first, pugi::xml_node second, double offset_m)
         link.append_copy(successor);
       }
       if (!link.first_child() && !lane.child("link")) own.remove_child(link);
-    }
-  }
-}
-
-// What a lane knew of a section that was not there.
-void restore_lane_links(pugi::xml_node section, const char* which) {
-  for (const char* side : kSides) {
-    for (auto lane : section.child(side).children("lane")) {
-      pugi::xml_node memory = find_clip_memory(lane);
-      for (const auto link : children(memory, which)) {
-        ordered_child(lane, "link", kLaneOrder).append_copy(link);
-        memory.remove_child(link);
+      for (const auto kept : find_clip_memory(lane).children("successor")) {
+        clip_memory(own).append_copy(kept);
       }
-      if (memory && !memory.first_child()) lane.remove_child(memory);
     }
   }
 }

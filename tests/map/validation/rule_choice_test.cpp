@@ -84,9 +84,12 @@ TEST(RuleChoice, TakesEveryNameOfARule) {
     EXPECT_TRUE(choice.asks_for(kSharing)) << pattern;
     EXPECT_FALSE(choice.asks_for(kGap)) << pattern;
   }
-  RuleChoice choice;
-  choice.only = {"asam.net:*lane.gap"};
-  EXPECT_TRUE(choice.asks_for(kGap));
+  for (const std::string pattern : {"asam.net:*lane.gap", "1.7.0:lane.gap", "1.7.0:*"}) {
+    RuleChoice choice;
+    choice.only = {pattern};
+    EXPECT_TRUE(choice.asks_for(kGap)) << pattern;
+    EXPECT_FALSE(choice.asks_for(kSharing)) << pattern;
+  }
 }
 
 TEST(RuleChoice, LeavesOutSingleIssues) {

@@ -10,6 +10,7 @@
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/validation/rule.h"
+#include "roadbed/map/validation/rule_choice.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands::inline maps {
@@ -275,12 +276,11 @@ std::string findings_svg(const FindingReport& report) {
 }
 
 std::string rules_table() {
-  constexpr std::string_view kAsamPrefix = "asam.net:xodr:";
   std::string table = "| rule | severity | ASAM or Autoware rule | finds |\n|---|---|---|---|\n";
   for (const map::validation::RuleInfo& rule : map::rule_catalogue()) {
     std::string other;
     if (!rule.asam_rule.empty()) {
-      other = fmt::format("`{}`", rule.asam_rule.substr(kAsamPrefix.size()));
+      other = fmt::format("`{}`", map::validation::without_asam_prefix(rule.asam_rule));
     } else if (!rule.autoware_rule.empty()) {
       other = fmt::format("`{}`", rule.autoware_rule);
     }

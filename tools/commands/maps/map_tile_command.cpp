@@ -89,8 +89,13 @@ class TileCommand : public Command {
                                      static_cast<double>(y) * side_m_);
         const Eigen::Vector2d far = corner + Eigen::Vector2d::Constant(side_m_);
         const map::Edited tile = clip(map::Region({geometry::box_ring(corner, far)}));
-        if (tile.bytes.empty()) continue;
         const std::string file = fmt::format("{}_{}{}", x, y, suffix());
+        if (tile.bytes.empty()) {
+          for (const auto& [what, many] : tile.counts) {
+            notes.push_back(fmt::format("no {}: {}; {}: {}", file, tile.reason, what, many));
+          }
+          continue;
+        }
         folder.write(file, tile.bytes);
         for (const std::string& note : tile.notes) notes.push_back(file + ": " + note);
         tiles.push_back({{"file", file},

@@ -1,5 +1,6 @@
 #include "roadbed/map/edit/clipping/clip.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -181,6 +182,28 @@ TEST(ClipLanelet2, LeavesNoReferenceToWhatIsNotThere) {
     }
   }
   EXPECT_GT(parts, 100u);
+}
+
+TEST(ClipLanelet2, CountsLinesWhereNoLaneletIs) {
+  std::string bytes = read_file(tests::data_folder() / "crossing.osm");
+  const RoadMap whole = parse_map(bytes, "crossing.osm");
+  std::string far;
+  for (const int id : {9001, 9002}) {
+    far += fmt::format(
+        "<node id=\"{}\" lat=\"0\" lon=\"0\"><tag k=\"local_x\" v=\"{}\"/><tag "
+        "k=\"local_y\" v=\"5000\"/></node>",
+        id, id);
+  }
+  bytes.insert(bytes.find("</osm>"),
+               far + "<way id=\"9003\"><nd ref=\"9001\"/><nd ref=\"9002\"/></way>");
+  const auto lines = [&](const Region& region) {
+    const Edited nothing = clip(bytes, "crossing.osm", region);
+    EXPECT_EQ(nothing.reason, "no lanelet of the map reaches into the region");
+    return nothing.counts;
+  };
+  EXPECT_TRUE(lines(box(-3e3, -3e3, -2e3, -2e3)).empty());
+  EXPECT_EQ(lines(box(9001.25, 4990, 9001.75, 5010)),
+            (std::vector<Count>{{"lines left out with it", 1}}));
 }
 
 // A clip of OpenDRIVE cuts the map itself, a clipper copies of what is near.

@@ -6,13 +6,16 @@
 #include <cmath>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/derived/map_diff.h"
 #include "roadbed/map/edit/clipping/clip.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/xml.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/real_data.h"
 
@@ -54,6 +57,42 @@ TEST(Merge, TakesOnceWhatIsTheSame) {
   EXPECT_TRUE(merged.renamed.empty());
 }
 
+std::vector<std::string> ids_of(const std::string& bytes, const char* xpath) {
+  const XmlDocument xml(bytes, "merged.xodr");
+  std::vector<std::string> ids;
+  for (const auto& found : xml.root().select_nodes(xpath)) {
+    ids.emplace_back(found.node().attribute("id").value());
+  }
+  return ids;
+}
+
+TEST(Merge, GivesObjectsBridgesAndTunnelsIdsOfTheirOwn) {
+  const auto with = [](std::string road, const std::string& objects) {
+    return road.insert(road.find("<signals>"), "<objects>" + objects + "</objects>");
+  };
+  const std::string first = with(road_at(0, 0),
+                                 "<object id=\"1\" s=\"5\" t=\"9\"/>"
+                                 "<bridge id=\"2\" s=\"0\" length=\"10\"/>");
+  const std::string second = with(road_at(500, 40),
+                                  "<object id=\"1\" s=\"5\" t=\"9\"/>"
+                                  "<bridge id=\"2\" s=\"0\" length=\"10\"/>"
+                                  "<tunnel id=\"3\" s=\"0\" length=\"10\"/>"
+                                  "<objectReference id=\"1\" s=\"7\"/>");
+  const Merged merged = merge({{first, "a.xodr"}, {second, "b.xodr"}});
+  const auto own = ids_of(merged.bytes, "//object | //bridge | //tunnel");
+  EXPECT_EQ(std::set<std::string>(own.begin(), own.end()).size(), 5u) << merged.bytes;
+  EXPECT_EQ(ids_of(merged.bytes, "//road[2]//object"), ids_of(merged.bytes, "//objectReference"));
+}
+
+// A number that is free in the first file is not, if the second one has it.
+TEST(Merge, GivesNoIdThatTheAddedFileHasItself) {
+  std::string second = road_at(500, 40);
+  const std::string signal = "<signal id=\"7\"";
+  second.insert(second.find(signal), "<signal id=\"8\" s=\"5\" t=\"-4\"/>");
+  const Merged merged = merge({{road_at(0, 0), "a.xodr"}, {second, "b.xodr"}});
+  EXPECT_EQ(ids_of(merged.bytes, "//signal"), (std::vector<std::string>{"7", "8", "9"}));
+}
+
 // Files repeat ids of signals from road to road.
 TEST(Merge, LeavesSignalsOfOneIdOnTheirRoads) {
   std::string bytes = road_at(0, 0);
@@ -70,6 +109,41 @@ TEST(Merge, LeavesSignalsOfOneIdOnTheirRoads) {
   const Merged merged = merge({half(-1e4, 30), half(30, 1e4)});
   EXPECT_TRUE(merged.renamed.empty());
   EXPECT_TRUE(diff(parse_map(bytes, "two.xodr"), parse_map(merged.bytes, "two.xodr")).empty());
+}
+
+TEST(Merge, LinksLanesAgainOfRoadsThatWereKeptWhole) {
+  const auto road = [](int id, double x, const std::string& link, const std::string& of_lanes) {
+    return fmt::format(
+        "<road id=\"{0}\" length=\"100\" junction=\"-1\"><link>{2}</link><planView><geometry "
+        "s=\"0\" x=\"{1}\" y=\"0\" hdg=\"0\" length=\"100\"><line/></geometry></planView><lanes>"
+        "<laneSection s=\"0\"><center><lane id=\"0\" type=\"none\"/></center><right><lane "
+        "id=\"-1\" type=\"driving\"><link>{3}</link><width sOffset=\"0\" a=\"3.5\" b=\"0\" "
+        "c=\"0\" d=\"0\"/></lane></right></laneSection></lanes></road>",
+        id, x, link, of_lanes);
+  };
+  const std::string before =
+      "<predecessor elementType=\"road\" elementId=\"{}\" contactPoint=\"end\"/>";
+  const std::string behind =
+      "<successor elementType=\"road\" elementId=\"{}\" contactPoint=\"start\"/>";
+  const std::string lane_before = "<predecessor id=\"-1\"/>",
+                    lane_behind = "<successor id=\"-1\"/>";
+  const std::string three =
+      "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/>" +
+      road(1, 0, fmt::format(fmt::runtime(behind), 2), lane_behind) +
+      road(2, 100, fmt::format(fmt::runtime(before + behind), 1, 3), lane_before + lane_behind) +
+      road(3, 200, fmt::format(fmt::runtime(before), 2), lane_before) + "</OpenDRIVE>";
+  const auto part = [&](double from_m, double to_m) {
+    const Region region({geometry::box_ring({from_m, -50}, {to_m, 50})});
+    return clip(three, "three.xodr", region, {.whole = true}).bytes;
+  };
+  const std::string middle = part(120, 180);
+  const char* links = "//lane/link/predecessor | //lane/link/successor";
+  EXPECT_EQ(ids_of(middle, links).size(), 0u) << middle;
+  EXPECT_EQ(ids_of(part(20, 180), links).size(), 2u) << "between roads 1 and 2";
+  const Merged merged = merge({{part(20, 80), "1"}, {middle, "2"}, {part(220, 280), "3"}});
+  EXPECT_EQ(ids_of(merged.bytes, links).size(), 4u);
+  EXPECT_EQ(merged.bytes.find("roadbed.clip"), std::string::npos) << merged.bytes;
+  EXPECT_TRUE(diff(parse_map(three, "three"), parse_map(merged.bytes, "three")).empty());
 }
 
 TEST(Merge, LinksEndsThatCoincide) {
