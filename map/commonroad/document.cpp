@@ -5,12 +5,11 @@
 #include <utility>
 
 #include "roadbed/map/elements/lane_lines.h"
+#include "roadbed/map/files/coordinate_limits.h"
 #include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::map::commonroad {
 namespace {
-
-constexpr double kFarthestM = 1e8, kHighestM = 1e5;  // beyond any road: a slip
 
 std::string_view reference(pugi::xml_node node) { return node.attribute("ref").value(); }
 

@@ -17,6 +17,7 @@
 #include "roadbed/map/elements/id.h"
 #include "roadbed/map/elements/lane.h"
 #include "roadbed/map/elements/map_content.h"
+#include "roadbed/map/files/coordinate_limits.h"
 #include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::map::inline elements {
@@ -162,8 +163,7 @@ class ByteReader {
   // No reader makes places farther off, and exact arithmetic cannot take just any number.
   template <typename Point>
   void check_place(const Point& place) const {
-    constexpr double farthest_m = 1e8;
-    check((place.array().abs() < farthest_m).all());  // false for what is no number
+    check((place.array().abs() < kFarthestM).all());  // false for what is no number
   }
   void raw(void* into, std::size_t size) {
     check(bytes_.size() >= size);

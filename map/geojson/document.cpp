@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "roadbed/map/files/coordinate_limits.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/parse_json.h"
@@ -168,8 +169,7 @@ class Parser {
              "degrees, or another system named by the member crs",
              "name the coordinate system in crs, or set crs to null where it is unknown");
     }
-    constexpr double farthest_m = 1e8;
-    if (!(at.cwiseAbs().maxCoeff() <= farthest_m)) {
+    if (!(at.cwiseAbs().maxCoeff() <= kFarthestM)) {
       refuse(fmt::format("[{}, {}] is beyond any road", at.x(), at.y()), "|x|, |y| ≤ 1e8 m",
              "correct the position");
     }

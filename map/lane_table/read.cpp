@@ -13,6 +13,7 @@
 #include "roadbed/map/elements/lane_lines.h"
 #include "roadbed/map/elements/participants.h"
 #include "roadbed/map/elements/side.h"
+#include "roadbed/map/files/coordinate_limits.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/projection.h"
 #include "roadbed/map/files/transverse_mercator.h"
@@ -22,8 +23,7 @@
 namespace roadbed::map::lane_table {
 namespace {
 
-constexpr double kFarthest_m = 1e8, kHighest_m = 1e5;  // beyond any road: a slip
-constexpr double kBeside_m = 0.5;                      // facing borders of neighbours
+constexpr double kBeside_m = 0.5;  // facing borders of neighbours
 
 std::optional<double> number_in(std::string_view text) {
   double number = 0.0;
@@ -137,8 +137,8 @@ class Builder {
         if (table.in_degrees) check_degrees(row, point);
         if (table.in_degrees && is_first) grid = grid_at(point);
         if (grid) point.head<2>() = metres_of(row, point, *grid);
-        const bool fits = point.head<2>().cwiseAbs().maxCoeff() <= kFarthest_m &&
-                          std::abs(point.z()) <= kHighest_m;
+        const bool fits =
+            point.head<2>().cwiseAbs().maxCoeff() <= kFarthestM && std::abs(point.z()) <= kHighestM;
         if (!fits)
           refuse("row " + row.id + ": a place beyond any road", "|x|, |y| ≤ 1e8 m", "correct it");
         if (is_first) parts_.origin_in_source = origin_near(point.head<2>());

@@ -9,13 +9,13 @@
 #include <mutex>
 #include <string>
 
+#include "roadbed/map/files/coordinate_limits.h"
 #include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/files/mgrs.h"
 
 namespace roadbed::map::lanelet2 {
 namespace {
 
-constexpr double kFarthest_m = 1e8;  // no coordinate of a map is larger
 constexpr double kAgreement_m = 0.01;
 
 // Autoware writes zeros where it knows local coordinates only.
@@ -120,7 +120,7 @@ std::string crs_text(const TransverseMercator& grid) {
 }
 
 bool NodePlace::is_local() const {
-  return std::abs(local_x_m) <= kFarthest_m && std::abs(local_y_m) <= kFarthest_m;
+  return std::abs(local_x_m) <= kFarthestM && std::abs(local_y_m) <= kFarthestM;
 }
 
 bool NodePlace::is_on_earth() const {

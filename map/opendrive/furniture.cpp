@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roadbed/map/files/coordinate_limits.h"
 #include "roadbed/map/opendrive/sample_borders.h"
 
 namespace roadbed::map::opendrive {
@@ -62,7 +63,7 @@ std::size_t section_index_at(const RoadRecord& road, double s_m) {
 }
 
 bool is_placeable(const Eigen::Vector3d& in_map) {
-  return in_map.allFinite() && in_map.cwiseAbs().maxCoeff() < 1e8;
+  return in_map.allFinite() && in_map.cwiseAbs().maxCoeff() < kFarthestM;
 }
 
 std::vector<LaneId> addressed_lanes(const RoadRecord& road, std::size_t road_index,

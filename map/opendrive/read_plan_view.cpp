@@ -1,3 +1,4 @@
+#include "roadbed/map/files/coordinate_limits.h"
 #include "roadbed/map/opendrive/element_readers.h"
 
 #include <fmt/format.h>
@@ -55,7 +56,7 @@ bool has_broken_number(const geometry::PlanCurve& curve) {
 }
 
 // Limits far beyond any road: a number past them is a slip, and would ask for endless points.
-constexpr double kFarthestM = 1e8, kMostTurningRad = 100.0;
+constexpr double kMostTurningRad = 100.0;
 
 bool is_in_range(const geometry::PlanPiece& piece) {
   const auto turning = [&](double curvature) { return std::abs(curvature) * piece.length_m; };

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roadbed/map/files/coordinate_limits.h"
+
 namespace roadbed::map::opendrive {
 namespace {
 
@@ -109,11 +111,10 @@ class SideSampler {
   }
 
   void check(const CrossSection& row) const {
-    constexpr double farthest_m = 1e8;
     for (std::size_t i = 0; i < row.border_in_map.size(); ++i) {
       // Written so that a value that is no number fails too.
-      if (!(row.border_in_map[i].cwiseAbs().maxCoeff() < farthest_m) ||
-          !(std::abs(row.z_m[i]) < farthest_m)) {
+      if (!(row.border_in_map[i].cwiseAbs().maxCoeff() < kFarthestM) ||
+          !(std::abs(row.z_m[i]) < kFarthestM)) {
         throw RoadFault(road_index_,
                         fmt::format("at s = {} m a border lies more than 100,000 km off", row.s_m),
                         "check its widths, offsets and elevations");

@@ -62,6 +62,7 @@ TEST(RouteCommand, GoesRoundAClosedLaneOrSaysWhyItCannot) {
   EXPECT_THAT(start.err, HasSubstr("start is on lane 1/0/-1, which is closed"));
   EXPECT_EQ(route_with("road:none").status, 3);
   EXPECT_EQ(route_with("polygon:1,2,3").status, 2);
+  EXPECT_EQ(route_with("polygon:0,0,nan,1,2,2").status, 2);
   EXPECT_EQ(route_with("everything").status, 2);
 }
 

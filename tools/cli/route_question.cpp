@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <string_view>
 
 #include "roadbed/map/files/input_error.h"
@@ -21,7 +22,7 @@ std::optional<geometry::Ring> ring_of(std::string_view text) {
   for (;;) {
     double value = 0.0;
     const auto [rest, error] = std::from_chars(at, end, value);
-    if (error != std::errc()) return {};
+    if (error != std::errc() || !std::isfinite(value)) return {};
     numbers.push_back(value);
     if (rest == end) break;
     if (*rest != ',') return {};

@@ -17,6 +17,12 @@ Eigen::Vector2d RigidMotion::operator()(const Eigen::Vector2d& point) const {
   return {c * point.x() - s * point.y() + shift_m.x(), s * point.x() + c * point.y() + shift_m.y()};
 }
 
+RigidMotion turn_about(const Eigen::Vector2d& place, double turn_rad) {
+  RigidMotion motion{.turn_rad = turn_rad};
+  motion.shift_m.head<2>() = place - motion(place);
+  return motion;
+}
+
 Alignment align(std::span<const PointPair> pairs) {
   if (pairs.size() < 2) throw std::invalid_argument("align: needs two pairs of points");
   Eigen::Vector2d from_mean(0, 0), to_mean(0, 0);

@@ -20,6 +20,9 @@ struct RigidMotion {
   Eigen::Vector2d operator()(const Eigen::Vector2d& point) const;
 };
 
+/// A turn about a place, which stays.
+RigidMotion turn_about(const Eigen::Vector2d& place, double turn_rad);
+
 /// Where a point is, and where it has to be.
 struct PointPair {
   Eigen::Vector2d from{0, 0}, to{0, 0};

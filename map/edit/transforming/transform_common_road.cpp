@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "roadbed/map/commonroad/document.h"
+#include "roadbed/map/edit/transforming/new_places.h"
 #include "roadbed/map/edit/transforming/transform.h"
 #include "roadbed/map/edit/xml_edit.h"
 #include "roadbed/map/files/input_error.h"
@@ -82,6 +83,7 @@ class ScenarioMover {
       at.push_back(commonroad::read_point(xml_, node, {0, 0}).head<2>());
     }
     const double turn_rad = options_.motion.turn_rad + move(at);
+    require_places(at, name_);
     for (std::size_t i = 0; i < at.size(); ++i) {
       const pugi::xml_node node = places_.points[i];
       set_value(node.child("x"), at[i].x());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "roadbed/map/edit/osm_edit.h"
+#include "roadbed/map/edit/transforming/new_places.h"
 #include "roadbed/map/edit/transforming/transform.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/projection.h"
@@ -25,11 +26,15 @@ using lanelet2::Document;
 }
 
 // Longitude and latitude, in place; without PROJ where the system is a transverse Mercator one.
-void to_degrees(const std::string& crs, std::vector<Vector2d>& points) {
+void to_degrees(const std::string& crs, std::vector<Vector2d>& points, const std::string& file) {
   const auto grid = lanelet2::transverse_mercator_of(crs);
   if (!grid) return to_lon_lat(crs, points);
   for (Vector2d& point : points) {
     const GeographicPoint place = grid->inverse(point);
+    constexpr double most_off_m = 1e-3;
+    if (!grid->reaches(place) || !((grid->forward(place) - point).norm() <= most_off_m)) {
+      refuse_place(point, "places that " + crs + " reaches", file);
+    }
     point = {place.longitude_deg, place.latitude_deg};
   }
 }
@@ -55,12 +60,13 @@ class NodeMover {
     if (has_degrees() || options_.to) {
       if (crs_.empty()) refuse_unknown(document_);
       degrees_ = locals_;
-      to_degrees(crs_, degrees_);
+      to_degrees(crs_, degrees_, document_.name);
     }
     if (options_.to) {
       locals_ = degrees_;
       from_lon_lat(*options_.to, locals_);
     }
+    require_places(locals_, document_.name);
     for (std::size_t k = 0; k < placed_.size(); ++k) write(k);
     Edited result;
     result.bytes = std::move(edit_).file();

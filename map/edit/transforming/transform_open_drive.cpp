@@ -17,6 +17,7 @@
 #include "roadbed/geometry/primitives/cross.h"
 #include "roadbed/map/edit/named_roads.h"
 #include "roadbed/map/edit/plan_cut.h"
+#include "roadbed/map/edit/transforming/new_places.h"
 #include "roadbed/map/edit/transforming/transform.h"
 #include "roadbed/map/edit/xml_edit.h"
 #include "roadbed/map/files/input_error.h"
@@ -36,6 +37,7 @@ class PointMapping {
   PointMapping(const opendrive::Document& document, const TransformOptions& options,
                const std::string& name)
       : options_(options),
+        name_(name),
         offset_(document.offset_in_crs),
         crs_(options.crs.value_or(document.crs)) {
     if (options.to && !crs_.empty()) require_metres(crs_);
@@ -48,7 +50,7 @@ class PointMapping {
 
   void apply(std::vector<Vector2d>& points) const {
     for (Vector2d& point : points) point = options_.motion(point);
-    if (!options_.to) return;
+    if (!options_.to) return require_places(points, name_);
     const double c = std::cos(offset_.heading_rad), s = std::sin(offset_.heading_rad);
     for (Vector2d& point : points) {  // the header's offset leads to the system
       point = Vector2d(c * point.x() - s * point.y() + offset_.x_m,
@@ -56,6 +58,7 @@ class PointMapping {
     }
     to_lon_lat(crs_, points);
     from_lon_lat(*options_.to, points);
+    require_places(points, name_);
   }
 
   /// How much higher all is: in another system the header's offset is taken in.
@@ -65,6 +68,7 @@ class PointMapping {
 
  private:
   const TransformOptions& options_;
+  std::string name_;
   CrsOffset offset_;
   std::string crs_;
 };

@@ -85,7 +85,7 @@ class MarkWriter {
     }
   }
 
-  // Where a lane may be left across the border, by the road's s.
+  // Where a lane may be left across the border, by the road's s, in order and apart.
   std::vector<Range> windows(std::size_t index, bool on_left) const {
     const PlannedLane& planned = section_.lanes[index];
     const LaneLinks& links = road_map_.graph().of(planned.lane);
@@ -99,6 +99,7 @@ class MarkWriter {
       const double b = shape_.road_s_m(index, window.to_s_m);
       ranges.push_back({std::min(a, b), std::max(a, b)});
     }
+    std::ranges::sort(ranges, {}, &Range::from_m);
     return ranges;
   }
 
@@ -121,18 +122,15 @@ class MarkWriter {
   }
 
   BorderMark mark_at(double s_m) const {
-    BorderMark found;
-    for (const auto& mark : marks_) {
-      if (mark.s_m <= s_m || &mark == &marks_.front()) found = mark.value;
-    }
-    return found;
+    if (marks_.empty()) return {};
+    const auto behind = std::ranges::upper_bound(marks_, s_m, {}, &FromStation<BorderMark>::s_m);
+    return behind == marks_.begin() ? behind->value : std::prev(behind)->value;
   }
 
   std::string_view change_at(double s_m) const {
     const auto inside = [&](const std::vector<Range>& ranges) {
-      return std::any_of(ranges.begin(), ranges.end(), [&](const Range& range) {
-        return range.from_m <= s_m && s_m < range.to_m;
-      });
+      const auto behind = std::ranges::upper_bound(ranges, s_m, {}, &Range::from_m);
+      return behind != ranges.begin() && s_m < std::prev(behind)->to_m;
     };
     const bool increase = inside(leftwards_), decrease = inside(rightwards_);
     if (increase && decrease) return "both";

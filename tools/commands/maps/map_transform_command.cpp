@@ -14,6 +14,7 @@
 
 #include "roadbed/map/edit/elevation/elevate.h"
 #include "roadbed/map/edit/transforming/transform.h"
+#include "roadbed/map/files/coordinate_limits.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/commands/maps/commands.h"
 #include "roadbed/tools/commands/maps/edit_output.h"
@@ -37,7 +38,6 @@ std::optional<double> angle_of(std::string_view text) {
 /// @throws InputError if the table is unusable.
 std::vector<map::PointPair> read_pairs(const std::filesystem::path& file) {
   constexpr const char* header = "from_x_m,from_y_m,to_x_m,to_y_m";
-  constexpr double farthest_m = 1e9;
   const std::string bytes = map::read_file(file);
   CsvReader table(bytes, map::input_name(file));
   std::vector<std::size_t> columns;
@@ -49,7 +49,7 @@ std::vector<map::PointPair> read_pairs(const std::filesystem::path& file) {
   while (table.next_row()) {
     table.check_width();
     const auto number = [&](std::size_t i) {
-      return table.number(columns[i], -farthest_m, farthest_m);
+      return table.number(columns[i], -map::kFarthestM, map::kFarthestM);
     };
     pairs.push_back({{number(0), number(1)}, {number(2), number(3)}});
     apart = apart || pairs.back().from != pairs.front().from;
@@ -75,8 +75,12 @@ class TransformCommand : public Command {
             .checked([](const std::string& text) {
               return angle_of(text) ? "" : "is not an angle within a whole turn, as 0.1 or 90deg";
             });
+    arguments.add("--about", about_m_, "Turn it about X,Y in place of the origin [m]")
+        .within(-map::kFarthestM, map::kFarthestM)
+        .values(2)
+        .separated_by(',');
     const Argument shift = arguments.add("--shift", shift_m_, "Then shift it by X,Y [m]")
-                               .within(-1e9, 1e9)
+                               .within(-map::kFarthestM, map::kFarthestM)
                                .values(2)
                                .separated_by(',');
     arguments.add("--lift", lift_m_, "Raise it [m]").within(-1e5, 1e5);
@@ -106,6 +110,7 @@ class TransformCommand : public Command {
     arguments.require([this] { return fault(); });
     arguments.example(
         "  roadbed map transform town.xodr --turn 90deg --shift=1000,-500 -o moved.xodr\n"
+        "  roadbed map transform crossing.osm --turn 2deg --about 700,300 -o turned.osm\n"
         "  roadbed map transform town.xodr --to EPSG:25832 -o utm.xodr\n"
         "  roadbed map transform town.xodr --elevation street.bt -o hilly.xodr");
   }
@@ -113,8 +118,14 @@ class TransformCommand : public Command {
   Exit run(const Streams& streams, const CommonOptions& common) override {
     output_.check();
     map::TransformOptions options;
-    if (!turn_.empty()) options.motion.turn_rad = angle_of(turn_).value();
-    if (!shift_m_.empty()) options.motion.shift_m.head<2>() << shift_m_[0], shift_m_[1];
+    if (!turn_.empty()) {
+      options.motion = map::turn_about(
+          about_m_.empty() ? Eigen::Vector2d(0, 0) : Eigen::Vector2d(about_m_[0], about_m_[1]),
+          angle_of(turn_).value());
+    }
+    if (!shift_m_.empty()) {
+      options.motion.shift_m.head<2>() += Eigen::Vector2d(shift_m_[0], shift_m_[1]);
+    }
     std::vector<std::string> notes;
     if (!pairs_file_.empty()) {
       const map::Alignment found = map::align(read_pairs(pairs_file_));
@@ -157,6 +168,7 @@ class TransformCommand : public Command {
   }
 
   std::string fault() const {
+    if (!about_m_.empty() && turn_.empty()) return "--about needs --turn";
     return moves() || !ground_files_.empty()
                ? output_.fault()
                : "at least one of --turn, --shift, --lift, --align, --to, --crs and --elevation is "
@@ -166,7 +178,7 @@ class TransformCommand : public Command {
   std::filesystem::path input_, pairs_file_;
   std::vector<std::filesystem::path> ground_files_;
   std::string turn_, to_, crs_;
-  std::vector<double> shift_m_;
+  std::vector<double> about_m_, shift_m_;
   std::optional<double> lift_m_;
   EditOutput output_;
 };

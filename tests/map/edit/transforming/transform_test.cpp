@@ -76,6 +76,29 @@ TEST(Transform, MovesEveryBorderOfALanelet) {
   expect_moved(parse_map(bytes, "a.osm"), parse_map(moved.bytes, "b.osm"), 1e-4);
 }
 
+// 60 degrees from a meridian there is no transverse Mercator any more.
+TEST(Transform, RefusesPlacesThatCannotBeReadAgain) {
+  const auto shifted = [](const char* name, double by_m) {
+    return transform(read_file(tests::data_folder() / name), name,
+                     {.motion = {.shift_m = {by_m, by_m, 0.0}}, .to = {}, .crs = {}})
+        .bytes;
+  };
+  for (const char* name : {"town.xodr", "junction.xml", "crossing.osm"}) {
+    EXPECT_NO_THROW(parse_map(shifted(name, 1e6), name)) << name;
+    EXPECT_THROW(shifted(name, 2e8), InputError) << name;
+  }
+  EXPECT_NO_THROW(parse_map(shifted("town.xodr", 9e7), "town.xodr"));
+  EXPECT_THROW(shifted("crossing.osm", 2e7), InputError);
+}
+
+TEST(Transform, TurnsAboutAPlaceThatStays) {
+  const Vector2d place(312'000.0, 5'400'000.0);
+  const RigidMotion motion = turn_about(place, 0.3);
+  EXPECT_NEAR((motion(place) - place).norm(), 0.0, 1e-6);
+  const Vector2d moved = motion(place + Vector2d(2.0, 0.0)) - place;
+  EXPECT_NEAR((moved - 2.0 * Vector2d(std::cos(0.3), std::sin(0.3))).norm(), 0.0, 1e-6);
+}
+
 TEST(Transform, MovesAScenarioWithAllThatIsInIt) {
   const std::string state =
       "<initialState><position><point><x>10</x><y>2</y></point></position><orientation><exact>3"
