@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "roadbed/geometry/index/line_distance.h"
 #include "roadbed/map/elements/byte_io.h"
 #include "roadbed/map/elements/map_fields.h"
 
@@ -284,9 +285,10 @@ class Comparison {
   // How far a vertex of one line is from the other line at most, and where.
   static void farthest(const RoadMap& from, const LaneLine& line, const RoadMap& to,
                        const LaneLine& other, MapChange& change) {
+    const geometry::LineDistance distance_m(other.in_map);
     for (const Eigen::Vector2d& point : line.in_map.points()) {
       const Eigen::Vector2d in_source = from.to_source(point);
-      const double away_m = std::abs(other.in_map.project(to.to_map(in_source)).d_m);
+      const double away_m = distance_m(to.to_map(in_source));
       if (away_m <= change.moved_m) continue;
       change.moved_m = away_m;
       change.in_source = in_source;

@@ -58,6 +58,17 @@ bool has_broken_number(const geometry::PlanCurve& curve) {
 // Limits far beyond any road: a number past them is a slip, and would ask for endless points.
 constexpr double kMostTurningRad = 100.0;
 
+/// A curve of a parameter may be far longer than its element says.
+bool is_too_long(const geometry::ParamPoly3Curve& curve) {
+  const double p = curve.p_end;
+  double most_m = 0.0;  // a bound that costs nothing
+  for (const auto* of : {&curve.u, &curve.v}) {
+    const auto& [a, b, c, d] = *of;
+    most_m += p * (std::abs(b) + p * (2.0 * std::abs(c) + 3.0 * p * std::abs(d)));
+  }
+  return !(most_m <= kLongestRoadM) && !(geometry::arc_length_m(curve) <= kLongestRoadM);
+}
+
 bool is_in_range(const geometry::PlanPiece& piece) {
   const auto turning = [&](double curvature) { return std::abs(curvature) * piece.length_m; };
   double turning_rad = 0.0;
@@ -66,6 +77,8 @@ bool is_in_range(const geometry::PlanPiece& piece) {
   } else if (const auto* spiral = std::get_if<geometry::SpiralCurve>(&piece.curve)) {
     turning_rad =
         std::max(turning(spiral->start_curvature_per_m), turning(spiral->end_curvature_per_m));
+  } else if (const auto* curve = std::get_if<geometry::ParamPoly3Curve>(&piece.curve)) {
+    if (is_too_long(*curve)) return false;
   }
   return std::abs(piece.start.x_m) <= kFarthestM && std::abs(piece.start.y_m) <= kFarthestM &&
          std::abs(piece.start.heading_rad) <= 1e6 && piece.length_m <= kLongestRoadM &&

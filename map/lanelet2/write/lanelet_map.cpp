@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "roadbed/geometry/index/line_distance.h"
 #include "roadbed/map/lanelet2/centreline.h"
 #include "roadbed/map/lanelet2/write/shared_borders.h"
 
@@ -170,11 +171,8 @@ class LaneletMapMaker {
     std::vector<Eigen::Vector2d> plan;
     for (const Eigen::Vector3d& point : own) plan.emplace_back(point.head<2>());
     const geometry::Polyline line(std::move(plan));
+    if (geometry::farthest_m(lane.centre.in_map, line) <= kCentreline_m) return {};
     const auto& points = lane.centre.in_map.points();
-    const bool agrees = std::all_of(points.begin(), points.end(), [&](const Eigen::Vector2d& p) {
-      return std::abs(line.project(p).d_m) <= kCentreline_m;
-    });
-    if (agrees) return {};
     std::vector<std::uint32_t> nodes;
     for (std::size_t i = 0; i < points.size(); ++i) {
       nodes.push_back(made_.osm.add_node({points[i].x(), points[i].y(), lane.centre.z_m[i]}));

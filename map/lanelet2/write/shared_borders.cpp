@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "roadbed/geometry/index/line_distance.h"
+
 namespace roadbed::map::lanelet2 {
 namespace {
 
@@ -79,14 +81,6 @@ bool equal_in_plan(const Line3& a, const Line3& b, bool reversed) {
   return true;
 }
 
-double farthest_m(const geometry::Polyline& from, const geometry::Polyline& to) {
-  double farthest = 0.0;
-  for (const Eigen::Vector2d& point : from.points()) {
-    farthest = std::max(farthest, std::abs(to.project(point).d_m));
-  }
-  return farthest;
-}
-
 class Sharer {
  public:
   Sharer(const RoadMap& road_map, const SharingOptions& options)
@@ -147,8 +141,8 @@ class Sharer {
     const std::uint32_t a = line_number(lane, side);
     const std::uint32_t b = line_number(neighbour.lane, neighbour.same_direction ? 1 - side : side);
     if (classes_.find(a).name == classes_.find(b).name) return;
-    const double apart_m =
-        std::max(farthest_m(polyline(a), polyline(b)), farthest_m(polyline(b), polyline(a)));
+    const double apart_m = std::max(geometry::farthest_m(polyline(a), polyline(b)),
+                                    geometry::farthest_m(polyline(b), polyline(a)));
     if (apart_m <= options_.same_line_m) classes_.unite(a, b, !neighbour.same_direction);
   }
 

@@ -15,6 +15,7 @@ namespace {
 using Points = std::vector<Eigen::Vector2d>;
 
 constexpr std::size_t kLeastSteps = 12;
+constexpr std::size_t kMostSteps = 400'000;  // longer roads are followed less closely
 
 // A symmetric, positive definite matrix with two bands beside its diagonal, and two right sides.
 class BandedSystem {
@@ -73,7 +74,8 @@ class BandedSystem {
 Points smoothed(const ReferenceTarget& target, double scale_m) {
   const geometry::Polyline line(target.in_map);
   const auto steps =
-      std::max(kLeastSteps, static_cast<std::size_t>(std::ceil(line.length_m() / target.step_m)));
+      std::clamp(static_cast<std::size_t>(std::ceil(line.length_m() / target.step_m)), kLeastSteps,
+                 kMostSteps);
   const double step_m = line.length_m() / static_cast<double>(steps);
   const double stiffness = std::pow(scale_m / step_m, 4);
   Points wanted;

@@ -187,6 +187,10 @@ TEST(OpenDrive, UnusableFilesAreRefusedOnOneLineWithTheirPlace) {
   EXPECT_THAT(refusal(replaced("x=\"0\"", "x=\"1e308\"")), HasSubstr("beyond that of any road"));
   EXPECT_THAT(refusal(replaced("<line/>", "<arc curvature=\"1e3\"/>")),
               HasSubstr("beyond that of any road"));
+  EXPECT_THAT(refusal(replaced("<line/>",
+                               "<paramPoly3 aU=\"0\" bU=\"100\" cU=\"1e7\" dU=\"-1e7\" aV=\"0\" "
+                               "bV=\"0\" cV=\"0\" dV=\"0\" pRange=\"normalized\"/>")),
+              HasSubstr("beyond that of any road"));
   EXPECT_THAT(refusal(replaced("a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"",
                                "a=\"3.5\" b=\"0\" c=\"0\" d=\"1e200\"")),
               HasSubstr("made.xodr:2: road A: "));
