@@ -18,9 +18,16 @@ class SignalPlacer {
   SignalPlacer(const Document& document, std::span<const RoadFrame> frames, const BuiltLanes& built,
                PointBudget& budget, std::vector<ImportDiagnostic>& remarks)
       : document_(document), frames_(frames), built_(built), budget_(budget), remarks_(remarks) {
+    std::size_t parts = built.lanes.size();
     for (std::size_t i = 0; i < document.roads.size(); ++i) {
-      road_index_.emplace(document.roads[i].id, i);
+      const RoadRecord& road = document.roads[i];
+      road_index_.emplace(road.id, i);
+      parts += road.signals.size() + road.signal_references.size();
+      std::size_t most = 0;
+      for (const LaneSection& section : road.sections) most = std::max(most, section.lanes.size());
+      most_lanes_.push_back(most);
     }
+    steps_ = geometry::WorkBudget(geometry::most_steps(parts));
   }
 
   std::vector<Signal> place() {
@@ -78,7 +85,8 @@ class SignalPlacer {
     signal.text = record.text;
     signal.dynamic = record.dynamic;
     signal.attributes = record.attributes;
-    speak_to(road, record.s_m, record.orientation, record.lanes, signal);
+    speak_to(road, record.s_m, record.orientation, record.lanes, document_.roads[road].line,
+             signal);
     index_.emplace(record.id, signals_.size());
     signals_.push_back(std::move(signal));
   }
@@ -114,11 +122,25 @@ class SignalPlacer {
     return in_map;
   }
 
-  void speak_to(std::size_t road, double s_m, char orientation, const LaneRanges& ranges,
+  // What lanes take here is little; what lists each lane of each signal takes much more, which
+  // counts where a signal has more lanes than any road.
+  static std::size_t points_for(std::size_t lanes) {
+    constexpr std::size_t usual = 16;
+    return 1 + lanes / 8 + 2 * (std::max(lanes, usual) - usual);
+  }
+
+  void speak_to(std::size_t road, double s_m, char orientation, const LaneRanges& ranges, long line,
                 Signal& signal) {
-    const auto lanes =
-        addressed_lanes(document_.roads[road], road, built_, s_m, orientation, ranges);
-    if (!budget_.try_to_spend(1 + lanes.size() / 8)) return;
+    std::vector<LaneId> lanes;
+    constexpr std::size_t steps_per_lane = 4;  // to find it by its name
+    if (steps_.spend(steps_per_lane * most_lanes_[road])) {
+      lanes = addressed_lanes(document_.roads[road], road, built_, s_m, orientation, ranges);
+    }
+    if (steps_.is_spent() || !budget_.try_to_spend(points_for(lanes.size()))) {
+      fault(fmt::format("signal {} of road {}", signal.source_id, document_.roads[road].id), line,
+            "speaks to more lanes than a map of this size can hold; it speaks to none of them");
+      return;
+    }
     for (const LaneId lane : lanes) {
       signal.lanes.push_back(lane);
       signal.lane_s_m.push_back(built_.station_m(lane, s_m));
@@ -133,7 +155,7 @@ class SignalPlacer {
       return;
     }
     Signal& signal = signals_[found->second];
-    speak_to(road, reference.s_m, reference.orientation, reference.lanes, signal);
+    speak_to(road, reference.s_m, reference.orientation, reference.lanes, reference.line, signal);
     signal.attributes.emplace_back(
         "signalReference",
         fmt::format("road {}, s {}, t {}", document_.roads[road].id, reference.s_m, reference.t_m));
@@ -146,6 +168,8 @@ class SignalPlacer {
   const Document& document_;
   std::span<const RoadFrame> frames_;
   const BuiltLanes& built_;
+  std::vector<std::size_t> most_lanes_;  // of any section, of each road
+  geometry::WorkBudget steps_{0};
   PointBudget& budget_;
   std::vector<ImportDiagnostic>& remarks_;
   std::map<std::string_view, std::size_t> road_index_;

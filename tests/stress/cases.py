@@ -40,6 +40,11 @@ def map_commands(at: str = "50,-1.7", *more: str) -> Commands:
         "diff": ("map diff", ["map", "diff", "in.rbm", "in.rbm"]),
         ".xodr": export(".xodr"),
         ".osm": export(".osm"),
+        "anchored .osm": (
+            "export .osm",
+            ["export", "in.rbm", "-o", "out.osm", "--anchor", "48,9", "--force"],
+        ),
+        ".nod.xml": export(".nod.xml"),
         ".xml": export(".xml"),
         ".geojson": export(".geojson"),
         ".fgb": export(".fgb"),
@@ -128,7 +133,10 @@ OCTREE: Commands = CLOUD + [
     )
 ]
 
-ALL = map_commands("50,-1.7", "reach", "diff", ".xodr", ".osm", ".xml", ".geojson", ".fgb")
+ALL = map_commands(
+    "50,-1.7",
+    *("reach", "diff", ".xodr", "anchored .osm", ".xml", ".nod.xml", ".geojson", ".fgb"),
+)
 CHECK: Commands = [("audit --check", ["audit", "--check", "IN"])]
 LOCATE: Commands = [("locate --points", ["locate", TOWN_XODR, "--points", "IN"])]
 ROUTES: Commands = [
@@ -151,8 +159,8 @@ BATCH: Commands = [("batch", ["batch", "IN", "-o", "out", "--threads", "1"])]
 
 CASES = [
     Case("roads apart", inputs.roads_apart, 100, ALL + EDIT),
-    Case("roads in a row", inputs.roads_in_a_row, 100, map_commands("50,-1.7", "reach", ".osm") + EDIT),
-    Case("same roads", inputs.same_roads, 10, map_commands("50,-1.7", "diff", ".osm", ".geojson") + EDIT),
+    Case("roads in a row", inputs.roads_in_a_row, 100, map_commands("50,-1.7", "reach", "anchored .osm") + EDIT),
+    Case("same roads", inputs.same_roads, 10, map_commands("50,-1.7", "diff", "anchored .osm", ".geojson") + EDIT),
     Case("shifted roads", inputs.shifted_roads, 10, map_commands("20,-1.7") + EDIT),
     Case("roads through one place", inputs.crossing_roads, 10, map_commands("20,0") + EDIT),
     Case("woven roads", inputs.woven_roads, 10, map_commands("20,5") + EDIT),
@@ -166,6 +174,7 @@ CASES = [
     Case("widths of a lane", inputs.widths_of_a_lane, 1000, map_commands("50,-1.7") + EDIT),
     Case("strips of a road", inputs.strips_of_a_road, 100, map_commands("50,-1.7") + EDIT),
     Case("signals of a road", inputs.signals_of_a_road, 100, map_commands("50,-1.7") + EDIT),
+    Case("signals of all lanes", inputs.signals_of_all_lanes, 50, ALL + EDIT),
     Case("repeated objects", inputs.repeated_objects, 10, map_commands("50,-1.7") + EDIT),
     Case("roads of one name", inputs.roads_of_one_name, 100, map_commands("50,-1.7")[:2] + EDIT),
     Case("unknown elements", inputs.unknown_elements, 3000, map_commands("50,-1.7") + EDIT),

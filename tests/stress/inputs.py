@@ -195,6 +195,17 @@ def signals_of_a_road(folder: Path, n: int) -> Path:
     return open_drive(folder, road(1, extra=f"<signals>{signals}</signals>"))
 
 
+def signals_of_all_lanes(folder: Path, n: int) -> Path:
+    lanes = "".join(LANE.replace('"-1"', f'"-{i + 1}"').replace("3.5", "0.5") for i in range(n))
+    signals = "".join(
+        f'<signal id="{i}" s="50" t="-5" type="274" subtype="50" dynamic="no" orientation="+" '
+        'zOffset="0" country="DE" value="50"/>'
+        for i in range(n)
+    )
+    extra = f"<signals>{signals}</signals>"
+    return open_drive(folder, road(1, sections=lanes_section(lanes), extra=extra))
+
+
 def repeated_objects(folder: Path, n: int) -> Path:
     objects = "".join(
         f'<object id="{i}" s="50" t="-5" type="barrier" zOffset="0" length="1" width="1" '

@@ -17,6 +17,7 @@ namespace {
 using testing::HasSubstr;
 using tests::made_document;
 using tests::made_lane;
+using tests::made_map;
 using tests::made_road;
 using tests::made_section;
 using tests::MadeRoad;
@@ -63,6 +64,27 @@ TEST(OpenDriveLimits, SingleSidedSectionsByTheHundredThousandTakeNoQuadraticTime
   }
   road.lanes = all;
   tests::expect_read_in_bounds(made_document(made_road(road)), "read 20001 lanes");
+}
+
+TEST(OpenDriveLimits, SignalsOfMoreLanesThanAMapCanHoldAreSaid) {
+  constexpr int kMany = 2'000;
+  std::string lanes;
+  for (int i = 1; i <= kMany; ++i) lanes += made_lane(-i);
+  MadeRoad road;
+  road.lanes = made_section(0, "", lanes);
+  road.rest = "<signals>";
+  for (int i = 0; i < kMany; ++i) {
+    road.rest += fmt::format(R"(<signal id="{}" s="5" t="0" orientation="+" type="274"/>)", i);
+  }
+  road.rest += "</signals>";
+  const RoadMap road_map = made_map(made_road(road));
+  std::size_t pairs = 0;
+  for (const Signal& signal : road_map.signals()) pairs += signal.lanes.size();
+  EXPECT_GT(pairs, 100'000u);
+  EXPECT_LT(pairs, 1'000'000u);
+  EXPECT_EQ(road_map.import_diagnostics().size(), kMany - pairs / kMany);
+  EXPECT_THAT(road_map.import_diagnostics().back().message,
+              HasSubstr("speaks to more lanes than a map of this size can hold"));
 }
 
 TEST(OpenDriveLimits, EmptyElementsAndLinesAreBounded) {
