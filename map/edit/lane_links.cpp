@@ -1,6 +1,6 @@
 #include "roadbed/map/edit/lane_links.h"
 
-#include "roadbed/map/edit/road_cut.h"
+#include "roadbed/map/edit/clip_memory.h"
 #include "roadbed/map/edit/xml_edit.h"
 
 namespace roadbed::map::inline edit {
@@ -8,6 +8,11 @@ namespace {
 
 void remove_children(pugi::xml_node parent, const char* name) {
   while (parent.remove_child(name)) continue;
+}
+
+void remove_empty_memory(pugi::xml_node lane) {
+  const pugi::xml_node memory = find_clip_memory(lane);
+  if (memory && !memory.first_child()) lane.remove_child(memory);
 }
 
 }  // namespace
@@ -36,7 +41,7 @@ void take_lane_links(pugi::xml_node section, const char* end, bool remembered) {
       remove_children(find_clip_memory(lane), end);
     }
     remove_children(links, end);
-    forget_empty_memory(lane);
+    remove_empty_memory(lane);
   });
 }
 
@@ -47,7 +52,7 @@ void restore_lane_links(pugi::xml_node section, const char* end) {
       ordered_child(lane, "link", kLaneOrder).append_copy(link);
     }
     remove_children(memory, end);
-    forget_empty_memory(lane);
+    remove_empty_memory(lane);
   });
 }
 

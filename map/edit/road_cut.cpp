@@ -374,17 +374,6 @@ RoadCut road_cut(pugi::xml_node road) {
   return fits ? part : whole;
 }
 
-pugi::xml_node find_clip_memory(pugi::xml_node parent) {
-  return parent.find_child_by_attribute("userData", "code", "roadbed.clip");
-}
-
-pugi::xml_node clip_memory(pugi::xml_node parent) {
-  if (const pugi::xml_node found = find_clip_memory(parent)) return found;
-  pugi::xml_node made = parent.append_child("userData");
-  set_text(made, "code", "roadbed.clip");
-  return made;
-}
-
 void remember_cut(pugi::xml_node road, const RoadCut& whole) {
   pugi::xml_node memory = clip_memory(road);
   pugi::xml_node cut = memory.child("cut");

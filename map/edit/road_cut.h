@@ -3,6 +3,8 @@
 #include <pugixml.hpp>
 #include <string>
 
+#include "roadbed/map/edit/clip_memory.h"
+
 namespace roadbed::map::inline edit {
 
 /// Which part of an OpenDRIVE road a `<road>` is.
@@ -22,11 +24,6 @@ RoadCut road_cut(pugi::xml_node road);
 
 /// Writes it, as `<cut>` in its clip memory.
 void remember_cut(pugi::xml_node road, const RoadCut& cut);
-
-/// Where a road, a lane or the root keeps what a clip took from it, made where it is missing:
-/// `<userData code="roadbed.clip">`.
-pugi::xml_node clip_memory(pugi::xml_node parent);
-pugi::xml_node find_clip_memory(pugi::xml_node parent);
 
 /// Whether a road can be cut between its ends: not where its lane sections speak of one side only.
 bool can_be_cut(pugi::xml_node road);

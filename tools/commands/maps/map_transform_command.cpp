@@ -110,7 +110,7 @@ class TransformCommand : public Command {
     arguments.require([this] { return fault(); });
     arguments.example(
         "  roadbed map transform town.xodr --turn 90deg --shift=1000,-500 -o moved.xodr\n"
-        "  roadbed map transform crossing.osm --turn 2deg --about 700,300 -o turned.osm\n"
+        "  roadbed map transform town.xodr --turn 2deg --about 300,200 -o turned.xodr\n"
         "  roadbed map transform town.xodr --to EPSG:25832 -o utm.xodr\n"
         "  roadbed map transform town.xodr --elevation street.bt -o hilly.xodr");
   }
