@@ -16,7 +16,8 @@ constexpr double kStep = 4.0;  // [m] between places along a centreline that are
 constexpr int kMostSteps = 2000;
 // Of a whole map, and a lane of it on average: a file of a few lines can hold roads without end.
 constexpr double kMostPlaces = 1e5, kMostPlacesOfALane = 200.0;
-constexpr double kMostPieces = 32.0;  // of lanes, at a place on average
+// Of lanes, that are looked at: of any map, and at a place on average.
+constexpr std::size_t kFewPieces = 200'000, kPiecesOfAPlace = 32;
 
 double elevation_m(const Lane& lane, double s_m) {
   const auto& stations = lane.centre.station_m;
@@ -43,11 +44,16 @@ std::vector<LaneId> lanes_under(const RoadMap& road_map, const Lane& lane, doubl
   return found;
 }
 
+/// How many places of a lane are looked at.
+int places_of(const Lane& lane, double about_m) {
+  return std::clamp(static_cast<int>(lane.length_m() / about_m), 1, kMostSteps);
+}
+
 /// How far a lane's centreline runs inside each other lane that it should not touch; a single
 /// place inside is a crossing.
 std::map<LaneId, double> overlaps_m(const RoadMap& road_map, const Lane& lane, double about_m,
                                     geometry::WorkBudget& budget) {
-  const int steps = std::clamp(static_cast<int>(lane.length_m() / about_m), 1, kMostSteps);
+  const int steps = places_of(lane, about_m);
   const double step_m = lane.length_m() / steps;
   std::map<LaneId, int> places;
   for (int i = 0; i < steps; ++i) {
@@ -65,8 +71,6 @@ bool is_compared(const Lane& lane) {
   return is_drivable(lane.type) && !lane.junction && lane.road.has_value();
 }
 
-double most_places(double lanes) { return std::max(kMostPlaces, lanes * kMostPlacesOfALane); }
-
 /// Between places that are looked at.
 double step_for(const RoadMap& road_map) {
   double length_m = 0.0, lanes = 0.0;
@@ -75,7 +79,7 @@ double step_for(const RoadMap& road_map) {
     length_m += std::min(lane.length_m(), kMostSteps * kStep);
     lanes += 1.0;
   }
-  return std::max(kStep, length_m / most_places(lanes));
+  return std::max(kStep, length_m / std::max(kMostPlaces, lanes * kMostPlacesOfALane));
 }
 
 struct Overlap {
@@ -85,9 +89,12 @@ struct Overlap {
 };
 
 void overlapping_lanes(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
-  const auto lanes = static_cast<double>(road_map.lanes().size());
-  geometry::WorkBudget budget(static_cast<std::size_t>(kMostPieces * most_places(lanes)));
   const double step_m = step_for(road_map);
+  std::size_t places = 0;
+  for (const Lane& lane : road_map.lanes()) {
+    if (is_compared(lane)) places += static_cast<std::size_t>(places_of(lane, step_m));
+  }
+  geometry::WorkBudget budget(kFewPieces + kPiecesOfAPlace * places);
   const auto middle = [](const Lane& lane) {
     return lane.pose_at(0.5 * lane.length_m()).position();
   };
