@@ -107,6 +107,16 @@ bool RegionPart::is_simple() const {
   return !is_whole_ && edges_.size() <= kFew;
 }
 
+Region::Side RegionDescent::side_of_disc(const Vector2d& centre, double radius_m) {
+  const Vector2d reach = Vector2d::Constant(radius_m);
+  const geometry::Box around(centre - reach, centre + reach);
+  while (!levels_.empty() && !levels_.back().box.contains(around)) levels_.pop_back();
+  const RegionPart& above = levels_.empty() ? whole_ : levels_.back().part;
+  if (above.is_simple()) return above.side_of_disc(centre, radius_m);
+  levels_.push_back({around, above.within(around)});
+  return levels_.back().part.side_of_disc(centre, radius_m);
+}
+
 std::vector<bool> contains_each(const Region& region, std::span<const Vector2d> points) {
   std::vector<bool> inside(points.size());
   if (!points.empty()) {

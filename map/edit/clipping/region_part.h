@@ -41,6 +41,26 @@ class RegionPart {
   bool is_inside_ = false;            // whether it is inside the region
 };
 
+/// Asks a region about discs most of which lie in the box of one that was asked about before, as
+/// those of a tree's cubes do from the root to the leaves: each from the edges near it alone.
+class RegionDescent {
+ public:
+  /// @param region  outlives it.
+  explicit RegionDescent(const Region& region) : whole_(region) {}
+
+  /// As Region::side_of_disc.
+  Region::Side side_of_disc(const Eigen::Vector2d& centre, double radius_m);
+
+ private:
+  struct Level {
+    geometry::Box box;
+    RegionPart part;
+  };
+
+  RegionPart whole_;
+  std::vector<Level> levels_;  // each in the one before
+};
+
 /// Of each of many points, from one to the next, whether the region contains it. O((N + points)
 /// log points) for points along a line, however long the edges are that it crosses.
 std::vector<bool> contains_each(const Region& region, std::span<const Eigen::Vector2d> points);

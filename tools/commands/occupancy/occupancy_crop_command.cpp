@@ -1,7 +1,9 @@
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "roadbed/map/edit/clipping/region_part.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/occupancy/octree/occupancy_merge.h"
@@ -13,7 +15,7 @@ namespace roadbed::tools::inline commands::inline occupancy {
 namespace {
 
 /// @param rounding_m  how far middles on an edge may be beside it.
-map::Stays stays_in(const map::Region& region, const Eigen::Vector2d& middle, double radius_m,
+map::Stays stays_in(map::RegionDescent& region, const Eigen::Vector2d& middle, double radius_m,
                     double rounding_m) {
   switch (region.side_of_disc(middle, radius_m + rounding_m)) {
     case map::Region::Side::inside:
@@ -89,12 +91,13 @@ class OccupancyCropCommand : public Command {
       part.box.max_in_source.z() = heights_m_[1];
     }
     if (!region_.given()) return part;
-    const map::Region region = region_of(occupancy);
-    part.box.min_in_source.head<2>() = region.bounds().min();
-    part.box.max_in_source.head<2>() = region.bounds().max();
+    const auto region = std::make_shared<const map::Region>(region_of(occupancy));
+    part.box.min_in_source.head<2>() = region->bounds().min();
+    part.box.max_in_source.head<2>() = region->bounds().max();
     const double rounding_m = 1e-6 * occupancy.resolution_m();
-    part.in_plan = [region, rounding_m](const Eigen::Vector2d& middle, double radius_m) {
-      return stays_in(region, middle, radius_m, rounding_m);
+    const auto descent = std::make_shared<map::RegionDescent>(*region);
+    part.in_plan = [region, descent, rounding_m](const Eigen::Vector2d& middle, double radius_m) {
+      return stays_in(*descent, middle, radius_m, rounding_m);
     };
     return part;
   }

@@ -60,6 +60,32 @@ TEST(Region, ContainsEachOfManyPointsAsItContainsOne) {
   EXPECT_EQ(contains_each(region, std::vector{Vector2d(-6, -6)}), std::vector{true});
 }
 
+/// Of a square and, where its disc is on the border, of its quarters, down to points.
+void expect_same_sides(const Region& region, RegionDescent& descent, const Vector2d& middle,
+                       double half_m, std::size_t& asked) {
+  const double radius_m = half_m < 0.05 ? 0.0 : half_m * std::sqrt(2.0);
+  const Region::Side side = region.side_of_disc(middle, radius_m);
+  ++asked;
+  ASSERT_EQ(descent.side_of_disc(middle, radius_m), side) << middle.transpose() << ' ' << radius_m;
+  if (side != Region::Side::border || radius_m == 0.0) return;
+  for (const Vector2d& to : {Vector2d(-1, -1), Vector2d(-1, 1), Vector2d(1, -1), Vector2d(1, 1)}) {
+    expect_same_sides(region, descent, middle + 0.5 * half_m * to, 0.5 * half_m, asked);
+  }
+}
+
+TEST(RegionDescent, KnowsTheSidesThatTheRegionKnows) {
+  std::vector<geometry::Ring> strips{star()};
+  for (double y = -9.0; y < 9.0; y += 0.5) {
+    strips.push_back({{-8.0, y}, {9.0, y + 0.3}, {9.0, y + 0.4}, {-8.0, y + 0.2}});
+  }
+  const Region region(std::move(strips));
+  RegionDescent descent(region);
+  std::size_t asked = 0;
+  expect_same_sides(region, descent, {0.25, -0.5}, 16.0, asked);
+  expect_same_sides(region, descent, {-3.0, 2.0}, 4.0, asked);
+  EXPECT_GT(asked, 10'000u);
+}
+
 TEST(Region, IsNotWhereAHoleIs) {
   const Region region({geometry::box_ring({0, 0}, {10, 10}), geometry::box_ring({4, 4}, {6, 6})});
   EXPECT_TRUE(region.contains({1, 1}));
