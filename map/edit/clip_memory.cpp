@@ -15,4 +15,9 @@ pugi::xml_node clip_memory(pugi::xml_node parent) {
   return made;
 }
 
+void remove_empty_memory(pugi::xml_node parent) {
+  const pugi::xml_node memory = find_clip_memory(parent);
+  if (memory && !memory.first_child()) parent.remove_child(memory);
+}
+
 }  // namespace roadbed::map::edit

@@ -9,4 +9,7 @@ namespace roadbed::map::inline edit {
 pugi::xml_node clip_memory(pugi::xml_node parent);
 pugi::xml_node find_clip_memory(pugi::xml_node parent);
 
+/// Takes it out where it holds nothing.
+void remove_empty_memory(pugi::xml_node parent);
+
 }  // namespace roadbed::map::edit

@@ -4,19 +4,6 @@
 #include "roadbed/map/edit/xml_edit.h"
 
 namespace roadbed::map::inline edit {
-namespace {
-
-void remove_children(pugi::xml_node parent, const char* name) {
-  while (parent.remove_child(name)) continue;
-}
-
-void remove_empty_memory(pugi::xml_node lane) {
-  const pugi::xml_node memory = find_clip_memory(lane);
-  if (memory && !memory.first_child()) lane.remove_child(memory);
-}
-
-}  // namespace
-
 void for_each_lane(pugi::xml_node section, const std::function<void(pugi::xml_node)>& f) {
   for (const char* side : {"left", "center", "right"}) {
     for (const auto lane : section.child(side).children("lane")) f(lane);

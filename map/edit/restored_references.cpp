@@ -60,7 +60,7 @@ void restore_position(pugi::xml_node signal) {
   signal.remove_child("positionRoad");
   signal.insert_copy_before(kept, memory);
   memory.remove_child(kept);
-  if (!memory.first_child()) signal.remove_child(memory);
+  remove_empty_memory(signal);
 }
 
 void restore_road(pugi::xml_node road) {

@@ -337,7 +337,7 @@ void remember_geometry(pugi::xml_node road, const RoadCut& whole, const char* en
     pugi::xml_node copy = kept.append_copy(known ? known.child("geometry") : across);
     if (!known && whole.from_m > 0.0) set_number(copy, "s", number(copy, "s") + whole.from_m);
   }
-  while (memory.remove_child(end)) continue;
+  remove_children(memory, end);
   if (across) {
     kept.set_name(end);
   } else {
@@ -454,7 +454,7 @@ void forget_empty_memory(pugi::xml_node parent) {
   const bool is_whole =
       parent.name() == std::string_view("road") && cut && road_cut(parent).is_whole();
   if (is_whole && text(parent, "id") == text(cut, "road")) memory.remove_child(cut);
-  if (!memory.first_child()) parent.remove_child(memory);
+  remove_empty_memory(parent);
 }
 
 }  // namespace roadbed::map::edit

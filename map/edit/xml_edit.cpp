@@ -85,6 +85,10 @@ std::vector<pugi::xml_node> children(pugi::xml_node parent, const char* name) {
   return {range.begin(), range.end()};
 }
 
+void remove_children(pugi::xml_node parent, const char* name) {
+  while (parent.remove_child(name)) continue;
+}
+
 pugi::xml_node child_of(pugi::xml_node parent, const char* name) {
   const pugi::xml_node found = parent.child(name);
   return found ? found : parent.append_child(name);

@@ -25,6 +25,9 @@ void set_text(pugi::xml_node node, const char* attribute, std::string_view value
 /// All children of that name, a list of its own: they may be removed one by one.
 std::vector<pugi::xml_node> children(pugi::xml_node parent, const char* name);
 
+/// Takes all children of that name off.
+void remove_children(pugi::xml_node parent, const char* name);
+
 /// The child of that name, made at the end where it is missing.
 pugi::xml_node child_of(pugi::xml_node parent, const char* name);
 

@@ -2,8 +2,7 @@
 
 namespace roadbed::map::inline files {
 
-/// The largest |x|, |y| and |z| of a place on a map [m]: what is beyond is a slip, and squares of
-/// it lose the millimetres.
+/// Of a place on a map: the largest |x| and |y|, and the largest |z| [m]. What is beyond is a slip.
 inline constexpr double kFarthestM = 1e8, kHighestM = 1e5;
 
 }  // namespace roadbed::map::files

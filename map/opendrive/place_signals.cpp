@@ -138,7 +138,8 @@ class SignalPlacer {
     }
     if (steps_.is_spent() || !budget_.try_to_spend(points_for(lanes.size()))) {
       fault(fmt::format("signal {} of road {}", signal.source_id, document_.roads[road].id), line,
-            "speaks to more lanes than a map of this size can hold; it speaks to none of them");
+            "the signals speak to more lanes than a map of this size can hold; this one speaks to "
+            "none");
       return;
     }
     for (const LaneId lane : lanes) {

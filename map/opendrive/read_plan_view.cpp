@@ -1,4 +1,3 @@
-#include "roadbed/map/files/coordinate_limits.h"
 #include "roadbed/map/opendrive/element_readers.h"
 
 #include <fmt/format.h>
@@ -7,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <string_view>
+
+#include "roadbed/map/files/coordinate_limits.h"
 
 namespace roadbed::map::opendrive {
 namespace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <set>
 #include <span>
@@ -11,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/geometry/primitives/disjoint_sets.h"
 #include "roadbed/map/edit/merging/coordinate_systems.h"
 #include "roadbed/map/edit/merging/link_ends.h"
 #include "roadbed/map/edit/merging/merge.h"
@@ -84,8 +84,8 @@ bool can_be_referred_to(pugi::xml_node one) {
 
 class Merger {
  public:
-  Merger(pugi::xml_node root, const MergeOptions& options)
-      : root_(root), options_(options), in_order_(kinds_in_order(root)) {
+  Merger(pugi::xml_node root, std::size_t files, const MergeOptions& options)
+      : root_(root), options_(options), in_order_(kinds_in_order(root)), maps_(files) {
     for (const auto road : root.children("road")) note_road(road);
     for (std::size_t i = 1; i < kKinds.size(); ++i) {
       for (const auto one : root.children(kKinds[i].name)) {
@@ -132,8 +132,14 @@ class Merger {
 
  private:
   using ById = std::map<std::string, pugi::xml_node>;
-  // Whole roads that have a signal or an object of that id: files repeat ids from road to road.
-  using UsersOfId = std::map<std::string, std::set<std::string>>;
+
+  // Ids of what is in a list of roads.
+  struct TakenIds {
+    const char* list;
+    NameChanges NewIds::*names;
+    std::map<std::string, std::set<std::string>> roads = {};  // whole ones: files repeat ids
+    FreshIds ids = {};
+  };
 
   void note_road(pugi::xml_node road) {
     last_[0] = road;
@@ -144,14 +150,9 @@ class Merger {
   // Roads, signals and whatever else has the id of something that is not the same.
   NewIds new_names(const Source& source, Merged& result) {
     ++source_;
-    maps_.push_back(source_);
     NewIds names;
     FreshIds roads;
     for (const auto& [id, parts] : parts_) roads.take(id);
-    const auto give = [&](const char* kind, NameChanges& to, FreshIds& ids, const std::string& id) {
-      to[id] = ids.fresh();
-      result.renamed.push_back({source.name, kind, id, to[id]});
-    };
     std::set<std::string> same;
     for (const auto road : source.root().children("road")) roads.take(road_cut(road).road);
     std::map<std::string, std::size_t> of_id;  // roads before
@@ -161,42 +162,47 @@ class Merger {
       if (is_same_road(id, road, of_id[id]++)) {
         same.insert(id);
       } else {
-        give("road", names.roads, roads, id);
+        give(source, "road", id, roads, names.roads, result);
       }
     }
-    for (const std::string& id : same) is_of_one_map(origins_[text(parts_[id].front(), "id")]);
-    const auto name_inside = [&](const char* list, const UsersOfId& taken, FreshIds& ids,
-                                 NameChanges& to) {
-      for (const auto road : source.root().children("road")) {
-        for (const auto one : named_in(road, list)) ids.take(text(one, "id"));
-      }
-      for (const auto road : source.root().children("road")) {
-        const std::string road_id = road_cut(road).road;
-        for (const auto one : named_in(road, list)) {
-          const std::string id = text(one, "id");
-          const auto found = taken.find(id);
-          if (found == taken.end() || to.contains(id)) continue;
-          if (same.contains(road_id) && found->second.contains(road_id)) continue;
-          if (!can_be_referred_to(one) && are_of_this_map(found->second)) continue;
-          give(one.name(), to, ids, id);
-        }
-      }
-    };
-    name_inside("signals", signals_, signal_ids_, names.signals);
-    name_inside("objects", objects_, object_ids_, names.objects);
+    for (const std::string& id : same) maps_.join(source_, source_of(id));
+    for (TakenIds& taken : inside_) name_inside(source, same, taken, names, result);
     for (std::size_t i = 1; i < kKinds.size(); ++i) name_others(source, i, result, names);
     return names;
   }
 
-  // Files of which one has a part of a road of the other are parts of one map.
-  void is_of_one_map(std::size_t source) {
-    const std::size_t to = maps_[source], from = maps_[source_];
-    std::replace(maps_.begin(), maps_.end(), from, to);
+  static void give(const Source& source, const char* kind, const std::string& id, FreshIds& ids,
+                   NameChanges& to, Merged& result) {
+    to[id] = ids.fresh();
+    result.renamed.push_back({source.name, kind, id, to[id]});
+  }
+
+  void name_inside(const Source& source, const std::set<std::string>& same, TakenIds& taken,
+                   NewIds& names, Merged& result) {
+    NameChanges& to = names.*taken.names;
+    for (const auto road : source.root().children("road")) {
+      for (const auto one : named_in(road, taken.list)) taken.ids.take(text(one, "id"));
+    }
+    for (const auto road : source.root().children("road")) {
+      const std::string road_id = road_cut(road).road;
+      for (const auto one : named_in(road, taken.list)) {
+        const std::string id = text(one, "id");
+        const auto found = taken.roads.find(id);
+        if (found == taken.roads.end() || to.contains(id)) continue;
+        if (same.contains(road_id) && found->second.contains(road_id)) continue;
+        if (!can_be_referred_to(one) && are_of_this_map(found->second)) continue;
+        give(source, one.name(), id, taken.ids, to, result);
+      }
+    }
+  }
+
+  std::size_t source_of(const std::string& road) {
+    return origins_[text(parts_[road].front(), "id")];
   }
 
   bool are_of_this_map(const std::set<std::string>& roads) {
-    return std::all_of(roads.begin(), roads.end(), [&](const auto& road) {
-      return maps_[origins_[text(parts_[road].front(), "id")]] == maps_[source_];
+    return std::all_of(roads.begin(), roads.end(), [&](const std::string& road) {
+      return maps_.of(source_of(road)) == maps_.of(source_);
     });
   }
 
@@ -212,8 +218,7 @@ class Merger {
       const auto found = by_id_[kind].find(id);
       if (found == by_id_[kind].end()) continue;
       if (are_equal(found->second, one) && !leads_to_renamed(one, names)) continue;
-      to[id] = ids.fresh();
-      result.renamed.push_back({source.name, kKinds[kind].name, id, to[id]});
+      give(source, kKinds[kind].name, id, ids, to, result);
     }
   }
 
@@ -265,14 +270,12 @@ class Merger {
   void note_ids(pugi::xml_node road) {
     const std::string id = road_cut(road).road;
     origins_[text(road, "id")] = source_;
-    const auto note = [&](const char* list, UsersOfId& users, FreshIds& ids) {
-      for (const auto one : named_in(road, list)) {
-        users[text(one, "id")].insert(id);
-        ids.take(text(one, "id"));
+    for (TakenIds& taken : inside_) {
+      for (const auto one : named_in(road, taken.list)) {
+        taken.roads[text(one, "id")].insert(id);
+        taken.ids.take(text(one, "id"));
       }
-    };
-    note("signals", signals_, signal_ids_);
-    note("objects", objects_, object_ids_);
+    }
   }
 
   // Parts in order of their stations; each is put to the one before that it goes on from.
@@ -361,13 +364,13 @@ class Merger {
   OfKinds in_order_;
   std::size_t source_ = 0;                                    // which of the files is being added
   std::map<std::string, std::vector<pugi::xml_node>> parts_;  // of each whole road
-  std::vector<std::size_t> maps_ = {0};             // of each file, the first one of the same map
-  std::map<std::string, std::size_t> origins_;      // file of each road
-  std::array<pugi::xml_node, kKinds.size()> last_;  // behind which new ones stand
-  std::array<ById, kKinds.size()> by_id_;           // of all kinds but roads
+  geometry::DisjointSets maps_;  // files of which one has a part of a road of another
+  std::map<std::string, std::size_t> origins_;                 // file of each road
+  std::array<pugi::xml_node, kKinds.size()> last_;             // behind which new ones stand
+  std::array<ById, kKinds.size()> by_id_;                      // of all kinds but roads
   std::map<std::string, std::vector<pugi::xml_node>> others_;  // by name
-  UsersOfId signals_, objects_;
-  FreshIds signal_ids_, object_ids_;
+  std::array<TakenIds, 2> inside_ = {
+      {{"signals", &NewIds::signals}, {"objects", &NewIds::objects}}};
   std::set<std::string> joined_;
   std::vector<Seam> seams_;
   std::size_t repeated_ = 0, open_parts_ = 0;
@@ -379,7 +382,7 @@ Merged merge_open_drive(std::vector<MergeInput> inputs, const MergeOptions& opti
   const std::string indent = indent_of(inputs.front().bytes);
   const Source first = read_source(std::move(inputs.front()));
   restore_references(first.root());
-  Merger merger(first.root(), options);
+  Merger merger(first.root(), inputs.size(), options);
   Merged result;
   for (std::size_t i = 1; i < inputs.size(); ++i) {
     const Source source = read_source(std::move(inputs[i]));

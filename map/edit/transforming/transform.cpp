@@ -1,5 +1,7 @@
 #include "roadbed/map/edit/transforming/transform.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -7,6 +9,8 @@
 
 #include "roadbed/geometry/primitives/cross.h"
 #include "roadbed/map/edit/refuse_format.h"
+#include "roadbed/map/files/coordinate_limits.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/projection.h"
 #include "roadbed/map/load_map.h"
 
@@ -47,6 +51,22 @@ Alignment align(std::span<const PointPair> pairs) {
   }
   found.rms_m = std::sqrt(sum / static_cast<double>(pairs.size()));
   return found;
+}
+
+void require_places(std::span<const Eigen::Vector2d> points, const std::string& name) {
+  const auto lost = std::ranges::find_if(points, [](const Eigen::Vector2d& point) {
+    return !(point.cwiseAbs().maxCoeff() <= kFarthestM);
+  });
+  if (lost != points.end()) refuse_place(*lost, "|x|, |y| ≤ 1e8 m", name);
+}
+
+void refuse_place(const Eigen::Vector2d& point, const std::string& needed,
+                  const std::string& name) {
+  throw InputError(
+      {.file = name,
+       .found = fmt::format("a place that would come to ({:.0f}, {:.0f})", point.x(), point.y()),
+       .needed = needed,
+       .remedy = "shift it less far, or turn it about a place in it (--about)"});
 }
 
 Edited transform(std::string bytes, const std::string& name, const TransformOptions& options) {

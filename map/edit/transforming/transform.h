@@ -51,6 +51,15 @@ struct TransformOptions {
 ///         unknown and `to` asks for another, or one of them is not of metres in a plane.
 Edited transform(std::string bytes, const std::string& name, const TransformOptions& options);
 
+/// Refuses places that no map may have, as a file with them could not be read again.
+/// @param points  in the new coordinates [m].
+/// @throws InputError
+void require_places(std::span<const Eigen::Vector2d> points, const std::string& name);
+
+/// Refuses a place that is not what is needed.
+[[noreturn]] void refuse_place(const Eigen::Vector2d& point, const std::string& needed,
+                               const std::string& name);
+
 // Of one format.
 //
 // OpenDRIVE: each geometry is put to its place, in another system turned and scaled so that it ends

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "roadbed/map/commonroad/document.h"
-#include "roadbed/map/edit/transforming/new_places.h"
 #include "roadbed/map/edit/transforming/transform.h"
 #include "roadbed/map/edit/xml_edit.h"
 #include "roadbed/map/files/input_error.h"

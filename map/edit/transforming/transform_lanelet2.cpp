@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "roadbed/map/edit/osm_edit.h"
-#include "roadbed/map/edit/transforming/new_places.h"
 #include "roadbed/map/edit/transforming/transform.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/projection.h"
@@ -33,7 +32,8 @@ void to_degrees(const std::string& crs, std::vector<Vector2d>& points, const std
     const GeographicPoint place = grid->inverse(point);
     constexpr double most_off_m = 1e-3;
     if (!grid->reaches(place) || !((grid->forward(place) - point).norm() <= most_off_m)) {
-      refuse_place(point, "places that " + crs + " reaches", file);
+      refuse_place(point, "places within 60° of its projection's meridian, short of the poles",
+                   file);
     }
     point = {place.longitude_deg, place.latitude_deg};
   }

@@ -17,7 +17,6 @@
 #include "roadbed/geometry/primitives/cross.h"
 #include "roadbed/map/edit/named_roads.h"
 #include "roadbed/map/edit/plan_cut.h"
-#include "roadbed/map/edit/transforming/new_places.h"
 #include "roadbed/map/edit/transforming/transform.h"
 #include "roadbed/map/edit/xml_edit.h"
 #include "roadbed/map/files/input_error.h"

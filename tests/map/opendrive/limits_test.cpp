@@ -84,7 +84,7 @@ TEST(OpenDriveLimits, SignalsOfMoreLanesThanAMapCanHoldAreSaid) {
   EXPECT_LT(pairs, 1'000'000u);
   EXPECT_EQ(road_map.import_diagnostics().size(), kMany - pairs / kMany);
   EXPECT_THAT(road_map.import_diagnostics().back().message,
-              HasSubstr("speaks to more lanes than a map of this size can hold"));
+              HasSubstr("speak to more lanes than a map of this size can hold"));
 }
 
 TEST(OpenDriveLimits, EmptyElementsAndLinesAreBounded) {

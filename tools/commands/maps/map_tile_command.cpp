@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -82,7 +83,7 @@ class TileCommand : public Command {
     const TileRange range = tiles_of(map::parse_map(bytes, name), name);
     const map::Clipper clip = map::make_clipper(std::move(bytes), name, options_);
     Json tiles = Json::array();
-    std::vector<std::string> notes;
+    std::vector<std::string> notes, left_out;
     for (long y = range.from_y; y <= range.to_y; ++y) {
       for (long x = range.from_x; x <= range.to_x; ++x) {
         const Eigen::Vector2d corner(static_cast<double>(x) * side_m_,
@@ -91,9 +92,7 @@ class TileCommand : public Command {
         const map::Edited tile = clip(map::Region({geometry::box_ring(corner, far)}));
         const std::string file = fmt::format("{}_{}{}", x, y, suffix());
         if (tile.bytes.empty()) {
-          for (const auto& [what, many] : tile.counts) {
-            notes.push_back(fmt::format("no {}: {}; {}: {}", file, tile.reason, what, many));
-          }
+          if (!tile.counts.empty()) left_out.push_back(file);
           continue;
         }
         folder.write(file, tile.bytes);
@@ -116,10 +115,20 @@ class TileCommand : public Command {
     if (common.quiet) return Exit::ok;
     fmt::print(streams.err, "{}: {} tiles\n", output_.string(), count);
     for (const std::string& note : notes) fmt::print(streams.err, "note: {}\n", note);
+    if (!left_out.empty()) fmt::print(streams.err, "note: {}\n", note_of(left_out));
     return Exit::ok;
   }
 
  private:
+  static std::string note_of(const std::vector<std::string>& left_out) {
+    constexpr std::size_t most = 5;
+    const std::size_t named = std::min(most, left_out.size()), more = left_out.size() - named;
+    return fmt::format(
+        "left out, as lines are there but no lanelet: {}{}",
+        fmt::join(left_out.begin(), left_out.begin() + static_cast<long>(named), ", "),
+        more > 0 ? fmt::format(" and {} more", more) : "");
+  }
+
   std::string suffix() const {
     const std::string own = input_.extension().string();
     return own.empty() || own == ".gz" || own == ".zst" ? input_.stem().extension().string() : own;

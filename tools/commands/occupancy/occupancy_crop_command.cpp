@@ -95,6 +95,7 @@ class OccupancyCropCommand : public Command {
     part.box.min_in_source.head<2>() = region->bounds().min();
     part.box.max_in_source.head<2>() = region->bounds().max();
     const double rounding_m = 1e-6 * occupancy.resolution_m();
+    // Asked by one thread, from a cube to those in it; it refers to the region.
     const auto descent = std::make_shared<map::RegionDescent>(*region);
     part.in_plan = [region, descent, rounding_m](const Eigen::Vector2d& middle, double radius_m) {
       return stays_in(*descent, middle, radius_m, rounding_m);

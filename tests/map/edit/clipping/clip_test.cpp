@@ -186,7 +186,6 @@ TEST(ClipLanelet2, LeavesNoReferenceToWhatIsNotThere) {
 
 TEST(ClipLanelet2, CountsLinesWhereNoLaneletIs) {
   std::string bytes = read_file(tests::data_folder() / "crossing.osm");
-  const RoadMap whole = parse_map(bytes, "crossing.osm");
   std::string far;
   for (const int id : {9001, 9002}) {
     far += fmt::format(

@@ -146,6 +146,31 @@ TEST(Merge, LinksLanesAgainOfRoadsThatWereKeptWhole) {
   EXPECT_TRUE(diff(parse_map(three, "three"), parse_map(merged.bytes, "three")).empty());
 }
 
+// The middle part ends where a section does; what its lanes knew of the next one is not lost when
+// it is put to the part before.
+TEST(Merge, LinksSectionsAgainBetweenThreeParts) {
+  const auto section = [](double s_m, const std::string& links) {
+    return fmt::format(
+        "<laneSection s=\"{}\"><center><lane id=\"0\" type=\"none\"/></center><right><lane "
+        "id=\"-1\" type=\"driving\"><link>{}</link><width sOffset=\"0\" a=\"3.5\" b=\"0\" "
+        "c=\"0\" d=\"0\"/></lane></right></laneSection>",
+        s_m, links);
+  };
+  const std::string whole =
+      "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road id=\"1\" length=\"100\" "
+      "junction=\"-1\"><planView><geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"100\"><line/>"
+      "</geometry></planView><lanes>" +
+      section(0, "<successor id=\"-1\"/>") + section(50, "<predecessor id=\"-1\"/>") +
+      "</lanes></road></OpenDRIVE>";
+  const auto part = [&](double from_m, double to_m) {
+    const Region region({geometry::box_ring({from_m, -50}, {to_m, 50})});
+    return MergeInput{clip(whole, "whole.xodr", region).bytes, fmt::format("from {}", from_m)};
+  };
+  const Merged merged = merge({part(-10, 20), part(20, 50), part(50, 110)});
+  EXPECT_EQ(ids_of(merged.bytes, "//lane/link/*").size(), 2u) << merged.bytes;
+  EXPECT_TRUE(diff(parse_map(whole, "whole"), parse_map(merged.bytes, "whole")).empty());
+}
+
 TEST(Merge, LinksEndsThatCoincide) {
   const Merged merged = merge({{road_at(0, 0), "a.xodr"}, {road_at(100.02, 0.01), "b.xodr"}});
   const RoadMap road_map = parse_map(merged.bytes, "merged.xodr");
