@@ -93,6 +93,11 @@ TOWN_XODR, TOWN_OSM = str(DATA / "town.xodr"), str(DATA / "crossing.osm")
 REGION: Commands = [
     (f"map clip {map_file[-4:]}", ["map", "clip", map_file, "--polygon", "IN", *PART])
     for map_file in (TOWN_XODR, TOWN_OSM)
+] + [
+    (
+        "occupancy crop",
+        ["occupancy", "crop", str(DATA / "town.bt"), "--polygon", "IN", "-o", "part.bt", "--force"],
+    )
 ]
 ALIGN: Commands = [("--align", ["map", "transform", TOWN_XODR, "--align", "IN", *BOTH])]
 GROUND: Commands = [
@@ -172,6 +177,12 @@ CASES = [
     Case("sections of a road", inputs.sections_of_a_road, 100, map_commands("50,-1.7", "reach") + EDIT),
     Case("pieces of a road", inputs.pieces_of_a_road, 1000, map_commands("50,-1.7") + EDIT),
     Case("widths of a lane", inputs.widths_of_a_lane, 1000, map_commands("50,-1.7") + EDIT),
+    Case(
+        "marks of a lane",
+        inputs.marks_of_a_lane,
+        500,
+        map_commands("50,-1.7", ".xodr", "anchored .osm", ".geojson") + EDIT,
+    ),
     Case("strips of a road", inputs.strips_of_a_road, 100, map_commands("50,-1.7") + EDIT),
     Case("signals of a road", inputs.signals_of_a_road, 100, map_commands("50,-1.7") + EDIT),
     Case("signals of all lanes", inputs.signals_of_all_lanes, 50, ALL + EDIT),

@@ -176,6 +176,16 @@ def widths_of_a_lane(folder: Path, n: int) -> Path:
     return open_drive(folder, road(1, sections=lanes_section(lane)))
 
 
+def marks_of_a_lane(folder: Path, n: int) -> Path:
+    marks = "".join(
+        f'<roadMark sOffset="{100 * i / n:g}" type="{"solid" if i % 2 else "broken"}" width="0.1" '
+        f'color="white" laneChange="{"none" if i % 2 else "both"}"/>'
+        for i in range(n)
+    )
+    lanes = LANE.replace("</lane>", marks + "</lane>") + LANE.replace('"-1"', '"-2"')
+    return open_drive(folder, road(1, sections=lanes_section(lanes)))
+
+
 def strips_of_a_road(folder: Path, n: int) -> Path:
     records = "".join(f'<coefficients s="{i}" b="0.001"/>' for i in range(n))
     surface = (
