@@ -1,7 +1,11 @@
 #include "roadbed/map/derived/lane_relations.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/map/derived/conflicts.h"
 
 namespace roadbed::map::inline derived {
 namespace {
@@ -82,6 +86,19 @@ std::vector<LaneId> merging_lanes(const LaneGraph& graph, LaneId lane) {
     }
   }
   return sorted(std::move(others));
+}
+
+bool begin_oppositely(const RoadMap& road_map, LaneId a, LaneId b) {
+  constexpr double opposite_rad = 2.4;
+  const auto heading_rad = [&](LaneId of) { return road_map.lane(of).pose_at(0.0).heading_rad; };
+  return std::abs(geometry::wrap_angle(heading_rad(a) - heading_rad(b))) > opposite_rad;
+}
+
+bool crosses_oncoming(const RoadMap& road_map, LaneId lane) {
+  return std::ranges::any_of(find_conflicts_of(road_map, lane), [&](const Conflict& conflict) {
+    return conflict.kind == ConflictKind::crossing &&
+           begin_oppositely(road_map, lane, conflict.partner_of(lane));
+  });
 }
 
 bool drives_on_the_left(const RoadMap& road_map) {

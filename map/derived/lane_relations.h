@@ -24,6 +24,13 @@ std::vector<Merge> merges(const LaneGraph& graph);
 /// In order of id.
 std::vector<LaneId> merging_lanes(const LaneGraph& graph, LaneId lane);
 
+/// Whether two lanes begin in opposite directions: further apart than 138 degrees.
+bool begin_oppositely(const RoadMap& road_map, LaneId a, LaneId b);
+
+/// Whether a lane crosses one of oncoming traffic, to which who turns along it gives way. Looks at
+/// the lanes near it.
+bool crosses_oncoming(const RoadMap& road_map, LaneId lane);
+
 /// Whether the map drives on the left: of OpenDRIVE most lanes on the left of their roads lead
 /// along them (8.2, `rule`); elsewhere more opposite lanes have each other to their right than to
 /// their left. O(lanes).

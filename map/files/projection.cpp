@@ -17,6 +17,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/open_module.h"
 #include "roadbed/map/files/proj_module.h"
+#include "roadbed/map/files/transverse_mercator.h"
 
 namespace roadbed::map::inline files {
 namespace {
@@ -94,7 +95,7 @@ std::optional<int> epsg_of_proj(const std::string& crs) {
   const char* end = zone->second.data() + zone->second.size();
   const auto [rest, fault] = std::from_chars(zone->second.data(), end, number);
   if (fault != std::errc() || rest != end || number < 1 || number > 60) return {};
-  return (words.contains("south") ? 32700 : 32600) + number;
+  return epsg_of_utm(number, words.contains("south"));
 }
 
 }  // namespace

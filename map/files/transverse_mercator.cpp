@@ -63,4 +63,6 @@ TransverseMercator utm_grid(int zone, bool south) {
           .false_northing_m = south ? 10'000'000.0 : 0.0};
 }
 
+int epsg_of_utm(int zone, bool south) { return (south ? 32700 : 32600) + zone; }
+
 }  // namespace roadbed::map::files

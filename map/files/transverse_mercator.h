@@ -39,4 +39,7 @@ int utm_zone(const GeographicPoint& point);
 /// @throws std::invalid_argument if the zone is not 1 to 60.
 TransverseMercator utm_grid(int zone, bool south);
 
+/// Its number in the EPSG registry: 32632, 32732 in the south.
+int epsg_of_utm(int zone, bool south);
+
 }  // namespace roadbed::map::files

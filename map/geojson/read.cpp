@@ -9,39 +9,11 @@
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/elements/lane_lines.h"
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/map/files/transverse_mercator.h"
+#include "roadbed/map/files/utm_region.h"
 #include "roadbed/map/geojson/document.h"
 
 namespace roadbed::map::geojson {
 namespace {
-
-GeographicPoint geographic(const Eigen::Vector2d& degrees) { return {degrees.y(), degrees.x()}; }
-
-/// From positions of the file to metres of the source's plane.
-class Frame {
- public:
-  Frame(const Document& document, const Eigen::Vector2d& first) : crs_(document.crs) {
-    if (!document.in_degrees) return;
-    const GeographicPoint point = geographic(first);
-    const int zone = utm_zone(point);
-    const bool south = first.y() < 0.0;
-    grid_ = utm_grid(zone, south);
-    crs_ = fmt::format("EPSG:{}", (south ? 32700 : 32600) + zone);
-  }
-
-  const std::string& crs() const { return crs_; }
-
-  bool reaches(const Eigen::Vector2d& position) const {
-    return !grid_ || grid_->reaches(geographic(position));
-  }
-  Eigen::Vector2d to_source(const Eigen::Vector2d& position) const {
-    return grid_ ? grid_->forward(geographic(position)) : position;
-  }
-
- private:
-  std::optional<TransverseMercator> grid_;
-  std::string crs_;
-};
 
 const Eigen::Vector2d* first_position(const Document& document) {
   for (const FeatureRecord& feature : document.features) {
@@ -66,8 +38,13 @@ void turn(geometry::Ring& ring, bool counter_clockwise) {
 
 class AreaBuilder {
  public:
-  AreaBuilder(const std::string& name, const Frame& frame, RoadMapParts& parts)
-      : name_(name), frame_(frame), parts_(parts) {}
+  /// @param region  of a file in degrees; none if its positions are metres.
+  AreaBuilder(const std::string& name, const std::optional<UtmRegion>& region, RoadMapParts& parts)
+      : name_(name), region_(region), parts_(parts) {}
+
+  Eigen::Vector2d to_source(const Eigen::Vector2d& position, const std::string& element) const {
+    return region_ ? region_->metres_of(position, name_, element) : position;
+  }
 
   void add(const FeatureRecord& feature) {
     Area area;
@@ -98,8 +75,7 @@ class AreaBuilder {
     for (std::size_t i = 0; i < record.rings.size(); ++i) {
       geometry::Ring ring;
       for (const Eigen::Vector2d& position : record.rings[i]) {
-        check_reach(position, element);
-        ring.emplace_back(frame_.to_source(position) - parts_.origin_in_source);
+        ring.emplace_back(to_source(position, element) - parts_.origin_in_source);
       }
       if (i == 0)
         polygon.outer = std::move(ring);
@@ -117,19 +93,8 @@ class AreaBuilder {
     return polygon;
   }
 
-  void check_reach(const Eigen::Vector2d& position, const std::string& element) const {
-    if (frame_.reaches(position)) return;
-    throw InputError(
-        {.file = name_,
-         .element = element,
-         .found = fmt::format("longitude {} is over 60° from the UTM zone of the first position",
-                              position.x()),
-         .needed = "polygons of one region",
-         .remedy = "give each region a file of its own"});
-  }
-
   const std::string& name_;
-  const Frame& frame_;
+  const std::optional<UtmRegion>& region_;
   RoadMapParts& parts_;
 };
 
@@ -156,10 +121,11 @@ RoadMapParts read(const std::string& bytes, const std::string& name) {
   for (const auto& [kind, count] : document.unused) parts.unused.push_back({kind, count});
   const Eigen::Vector2d* first = first_position(document);
   if (!first) refuse_empty(name, parts);
-  const Frame frame(document, *first);
-  parts.crs = frame.crs();
-  parts.origin_in_source = origin_near(frame.to_source(*first));
-  AreaBuilder builder(name, frame, parts);
+  const std::optional<UtmRegion> region =
+      document.in_degrees ? std::optional<UtmRegion>(*first) : std::nullopt;
+  parts.crs = region ? region->crs() : document.crs;
+  AreaBuilder builder(name, region, parts);
+  parts.origin_in_source = origin_near(builder.to_source(*first, ""));
   for (const FeatureRecord& feature : document.features) builder.add(feature);
   if (parts.areas.empty()) refuse_empty(name, parts);
   return parts;

@@ -16,7 +16,7 @@
 #include "roadbed/map/files/coordinate_limits.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/projection.h"
-#include "roadbed/map/files/transverse_mercator.h"
+#include "roadbed/map/files/utm_region.h"
 #include "roadbed/map/lane_table/shapes.h"
 #include "roadbed/map/lane_table/table.h"
 
@@ -128,15 +128,15 @@ class Builder {
 
   /// Coordinates from the file's to the map's.
   void place(Table& table) {
-    std::optional<TransverseMercator> grid;
+    std::optional<UtmRegion> region;
     parts_.crs = table.crs;
     if (!table.in_degrees) check_metres(table.crs);
     bool is_first = true;
     for (Row& row : table.rows) {
       for (Eigen::Vector3d& point : row.points) {
         if (table.in_degrees) check_degrees(row, point);
-        if (table.in_degrees && is_first) grid = grid_at(point);
-        if (grid) point.head<2>() = metres_of(row, point, *grid);
+        if (table.in_degrees && is_first) region.emplace(point.head<2>());
+        if (region) point.head<2>() = region->metres_of(point.head<2>(), name_, "row " + row.id);
         const bool fits =
             point.head<2>().cwiseAbs().maxCoeff() <= kFarthestM && std::abs(point.z()) <= kHighestM;
         if (!fits)
@@ -146,15 +146,7 @@ class Builder {
         point.head<2>() -= parts_.origin_in_source;
       }
     }
-  }
-
-  Eigen::Vector2d metres_of(const Row& row, const Eigen::Vector3d& degrees,
-                            const TransverseMercator& grid) const {
-    const GeographicPoint place{degrees.y(), degrees.x()};
-    if (grid.reaches(place)) return grid.forward(place);
-    refuse(fmt::format("row {}: longitude {} is over 60° from the UTM zone of the first place",
-                       row.id, degrees.x()),
-           "lanes of one region", "give each region a file of its own");
+    if (region) parts_.crs = region->crs();
   }
 
   /// Widths and speeds are of metres. What PROJ does not know is left to whoever drew it.
@@ -168,13 +160,6 @@ class Builder {
     refuse(
         fmt::format("row {}: [{}, {}] is no longitude and latitude", row.id, point.x(), point.y()),
         "degrees, or another system named by the member crs", "name the coordinate system");
-  }
-
-  TransverseMercator grid_at(const Eigen::Vector3d& point) {
-    const int zone = utm_zone({point.y(), point.x()});
-    const bool south = point.y() < 0.0;
-    parts_.crs = fmt::format("EPSG:{}", (south ? 32700 : 32600) + zone);
-    return utm_grid(zone, south);
   }
 
   std::string id_of(const Row& row) const {

@@ -47,8 +47,8 @@ double worst_difference_m(const TransverseMercator& grid, std::span<const NodePl
   return worst_m;
 }
 
-std::string epsg_of_utm(int zone, bool south) {
-  return fmt::format("EPSG:{}", (south ? 32700 : 32600) + zone);
+std::string crs_of_utm(int zone, bool south) {
+  return fmt::format("EPSG:{}", epsg_of_utm(zone, south));
 }
 
 // "+key=value +flag …" as keys and values; a flag has an empty value.
@@ -111,7 +111,7 @@ std::string crs_text(const TransverseMercator& grid) {
     const TransverseMercator whole = utm_grid(zone, south);
     if (grid.false_easting_m == whole.false_easting_m &&
         grid.false_northing_m == whole.false_northing_m) {
-      return epsg_of_utm(zone, south);
+      return crs_of_utm(zone, south);
     }
   }
   return fmt::format(
@@ -142,7 +142,7 @@ Frame::Frame(std::span<const NodePlace> nodes, std::string_view mgrs_code, int t
   const int zone = utm_zone(geographic(*first));
   const bool south = first->latitude_deg < 0.0;
   grid_ = utm_grid(zone, south);
-  crs_ = epsg_of_utm(zone, south);
+  crs_ = crs_of_utm(zone, south);
 }
 
 void Frame::find_local_grid(std::span<const NodePlace> nodes, std::string_view mgrs_code,

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "roadbed/map/derived/conflicts.h"
+#include "roadbed/map/derived/lane_relations.h"
 #include "roadbed/map/derived/rule_index.h"
 #include "roadbed/planning/task/give_way_rules.h"
 
@@ -72,7 +73,7 @@ class HiddenTraffic::Finder {
       const LaneId other = conflict.partner_of(leg.lane);
       const double meets_at_m = station(leg.lane, conflict.on(leg.lane).from_s_m);
       if (on_route_.contains(other) || meets_at_m < place_.s_m) continue;
-      if (place_.kind == StopKind::turn && !begin_oppositely(task_.road_map, leg.lane, other))
+      if (place_.kind == StopKind::turn && !map::begin_oppositely(task_.road_map, leg.lane, other))
         continue;
       add(other, conflict.on(other).from_s_m, meets_at_m);
     }

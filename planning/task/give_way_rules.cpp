@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cmath>
 #include <span>
 #include <string>
-
-#include "roadbed/geometry/primitives/angle.h"
 
 namespace roadbed::planning::inline task {
 namespace {
 
 constexpr std::array<std::string_view, 4> kStopSigns{"206", "de206", "r1-1", "usr1-1"};
 constexpr std::array<std::string_view, 4> kGiveWaySigns{"205", "de205", "r1-2", "usr1-2"};
-constexpr double kOpposite_rad = 2.4;
 
 std::string lower(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char letter) {
@@ -49,13 +45,6 @@ bool has_priority_role(const map::Regulation& regulation, std::string_view role,
          std::ranges::any_of(regulation.members, [&](const map::RegulationMember& member) {
            return member.role == role && member.lane == lane;
          });
-}
-
-bool begin_oppositely(const map::RoadMap& road_map, map::LaneId a, map::LaneId b) {
-  const auto heading_rad = [&](map::LaneId of) {
-    return road_map.lane(of).pose_at(0.0).heading_rad;
-  };
-  return std::abs(geometry::wrap_angle(heading_rad(a) - heading_rad(b))) > kOpposite_rad;
 }
 
 }  // namespace roadbed::planning::task

@@ -19,7 +19,4 @@ bool has_sign_to_give_way(const map::RoadMap& road_map, const map::RuleIndex& ru
 /// Whether a regulation "right_of_way" names a lane in a role: "yield" or "right_of_way".
 bool has_priority_role(const map::Regulation& regulation, std::string_view role, map::LaneId lane);
 
-/// Whether two lanes begin in opposite directions: further apart than 138 degrees.
-bool begin_oppositely(const map::RoadMap& road_map, map::LaneId a, map::LaneId b);
-
 }  // namespace roadbed::planning::task

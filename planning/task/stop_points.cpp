@@ -8,6 +8,7 @@
 
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/derived/conflicts.h"
+#include "roadbed/map/derived/lane_relations.h"
 #include "roadbed/map/derived/rule_index.h"
 #include "roadbed/planning/task/give_way_rules.h"
 #include "roadbed/planning/task/lane_join.h"
@@ -131,7 +132,7 @@ class Finder {
     for (const map::Conflict& conflict : map::find_conflicts_of(road_map_, turn)) {
       if (conflict.kind != map::ConflictKind::crossing) continue;
       const LaneId other = conflict.partner_of(turn);
-      if (!begin_oppositely(road_map_, turn, other) || gives_way(other, turn)) continue;
+      if (!map::begin_oppositely(road_map_, turn, other) || gives_way(other, turn)) continue;
       const map::StationRange& range = conflict.on(turn);
       if (!crossed || range.from_s_m < crossed->from_s_m) crossed = range;
     }

@@ -1,5 +1,6 @@
 #include "roadbed/planning/tracking/perceived_traffic.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -29,7 +30,8 @@ geometry::Trajectory joined(const Track& track, const geometry::Trajectory& ahea
 }  // namespace
 
 PerceivedTraffic::PerceivedTraffic(const map::RoadMap& road_map, const TrackerOptions& options)
-    : noise_(options.noise),
+    : road_map_(road_map),
+      noise_(options.noise),
       tracker_(options),
       lane_forecast_(road_map),
       across_oncoming_(map::drives_on_the_left(road_map) ? -1.0 : 1.0) {}
@@ -60,7 +62,7 @@ void PerceivedTraffic::forecast() {
   }
 }
 
-std::vector<Obstacle> PerceivedTraffic::obstacles(const geometry::Pose2& map_from_vehicle) const {
+std::vector<Obstacle> PerceivedTraffic::obstacles(const geometry::Pose2& map_from_vehicle) {
   const auto slots = tracker_.slots();
   const geometry::Trajectory nowhere{std::vector<geometry::TrajectoryPoint>(1)};
   std::vector<Obstacle> obstacles(kPlacesPerSlot * slots.size(),
@@ -82,17 +84,31 @@ std::vector<Obstacle> PerceivedTraffic::obstacles(const geometry::Pose2& map_fro
 }
 
 /// Whether a motion that is not the most likely one matters: not of who drives the same way and
-/// is followed or passed as he is, nor of who comes the other way and would have to give way to
-/// turn across.
-bool PerceivedTraffic::is_planned_for(const ForecastMotion& motion,
-                                      double vehicle_heading_rad) const {
+/// is followed or passed as he is, nor of who comes the other way and would have to give way.
+bool PerceivedTraffic::is_planned_for(const ForecastMotion& motion, double vehicle_heading_rad) {
   if (motion.probability < kLikely) return false;
-  const std::vector<geometry::TrajectoryPoint>& points = motion.motion.points();
-  const double towards_rad =
-      std::abs(geometry::wrap_angle(points.front().heading_rad - vehicle_heading_rad));
+  const double towards_rad = std::abs(
+      geometry::wrap_angle(motion.motion.points().front().heading_rad - vehicle_heading_rad));
   if (towards_rad < kSameWay_rad) return false;
+  return towards_rad < kOncoming_rad || !has_to_give_way(motion);
+}
+
+/// Who turns across oncoming traffic has; not who stays in a roundabout, which turns as far.
+bool PerceivedTraffic::has_to_give_way(const ForecastMotion& motion) {
+  const std::vector<geometry::TrajectoryPoint>& points = motion.motion.points();
   const double turn_rad = points.back().heading_rad - points.front().heading_rad;
-  return towards_rad < kOncoming_rad || across_oncoming_ * turn_rad < kTurn_rad;
+  if (across_oncoming_ * turn_rad < kTurn_rad) return false;
+  if (motion.lanes.empty()) return true;
+  const Eigen::Vector2d from(points.front().x_m, points.front().y_m);
+  double begins_m = -road_map_.lane(motion.lanes.front()).centre.in_map.project(from).s_m;
+  for (const map::LaneId lane : motion.lanes) {
+    if (begins_m > kForeseen_s * points.front().speed_mps) break;
+    const auto [known, is_new] = crosses_oncoming_.try_emplace(lane);
+    if (is_new) known->second = map::crosses_oncoming(road_map_, lane);
+    if (known->second) return true;
+    begins_m += road_map_.lane(lane).length_m();
+  }
+  return false;
 }
 
 }  // namespace roadbed::planning::tracking

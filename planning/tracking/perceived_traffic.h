@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <span>
 #include <vector>
 
@@ -36,7 +37,7 @@ class PerceivedTraffic {
 
   /// As they were, are, and may be: kMostMotions places for each slot, the most likely motion
   /// first, then others that matter to the vehicle; a place without any is never there.
-  std::vector<Obstacle> obstacles(const geometry::Pose2& map_from_vehicle) const;
+  std::vector<Obstacle> obstacles(const geometry::Pose2& map_from_vehicle);
 
   /// How they may move by the rules of the road, who are known but for twice the noise.
   MotionBounds expected() const;
@@ -45,13 +46,16 @@ class PerceivedTraffic {
 
  private:
   void forecast();
-  bool is_planned_for(const ForecastMotion& motion, double vehicle_heading_rad) const;
+  bool is_planned_for(const ForecastMotion& motion, double vehicle_heading_rad);
+  bool has_to_give_way(const ForecastMotion& motion);
 
+  const map::RoadMap& road_map_;
   ObjectNoise noise_;
   Tracker tracker_;
   LaneForecast lane_forecast_;
   double across_oncoming_;  ///< sign of a turn across oncoming traffic: 1 left, −1 right
   std::vector<std::vector<ForecastMotion>> forecasts_;
+  std::map<map::LaneId, bool> crosses_oncoming_;  ///< of lanes that were asked about
 };
 
 }  // namespace roadbed::planning::tracking

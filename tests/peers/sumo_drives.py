@@ -14,13 +14,16 @@ road; --style sporty comes nearer to that than our normal style.
     hits       collisions that SUMO reports of the vehicle, each 0.1 s; nearer than 2.5 m to who is ahead on
                the lane that SUMO has it on is one
     touches    vehicles whose body meets its body
-    brakes     vehicles directly behind it that brake harder than they like to (4.5 m/s²), for 0.1 s or more
+    brakes     vehicles directly behind it that brake as hard as SUMO's can (9 m/s²), which SUMO reports as
+               emergency braking
+    hard       those that brake harder than they like to (4.5 m/s²), for 0.1 s or more; and behind it while
+               SUMO's own driver drives
     red        stop lines passed while SUMO shows red
     time       of the trips that both finish, up to where roadbed slows down for the goal, at least 50 m
                before it: roadbed's over SUMO's
     alike      the same over that of SUMO's driver who is held to our style's lateral acceleration in bends
-A row per map and density, and one of all. Exit status 1 if there is a hit, a touch, a red light, or a trip not
-finished in time that SUMO's own driver finishes."""
+A row per map and density, and one of all. Exit status 1 if there is a hit, a touch, an emergency braking, a
+red light, or a trip not finished in time that SUMO's own driver finishes."""
 import argparse
 import json
 import math
@@ -41,7 +44,7 @@ STEP_S = 0.1
 SEEN_M = 200.0
 LENGTH_M, WIDTH_M, REAR_OVERHANG_M = 4.508, 1.610, 0.8312829  # the pilot's default vehicle
 FRONT_M = LENGTH_M - REAR_OVERHANG_M
-COMFORTABLE_MPS2 = 4.5
+COMFORTABLE_MPS2, HARDEST_MPS2 = 4.5, 9.0  # braking of SUMO's vehicles
 SLOWS_MPS2 = {"gentle": 1.0, "normal": 1.5, "sporty": 2.2}  # for the goal
 LATERAL_MPS2 = {"gentle": 1.5, "normal": 2.5, "sporty": 3.5}  # in bends; both as the styles
 LEAST_TRIP_M = 400.0
@@ -204,22 +207,67 @@ def colour_of(state):
     return {"r": "red", "u": "red", "y": "yellow", "Y": "yellow"}.get(state, "green")
 
 
-class Lights:
-    """Signals of the map by the links that SUMO switches, whose ids netconvert keeps."""
+def place_on_road(road, s_m, forward):
+    """Position and direction of travel on the reference line of an OpenDRIVE road."""
+    part = [one for one in road.find("planView") if float(one.get("s")) <= s_m + 1e-6][-1]
+    x, y, heading, length = (float(part.get(name)) for name in ("x", "y", "hdg", "length"))
+    u = np.linspace(0.0, min(s_m - float(part.get("s")), length), 201)
+    shape = part[0]
+    if shape.tag == "paramPoly3":
+        scale = length if shape.get("pRange") == "normalized" else 1.0
+        along, across = (np.polyval([float(shape.get(k + axis)) for k in "dcba"], u / scale)
+                         for axis in "UV")
+        step = [along[-1] - along[-2], across[-1] - across[-2]] if s_m > 0.0 else [1.0, 0.0]
+        turned = math.atan2(step[1], step[0])
+    else:
+        first = float(shape.get("curvStart", shape.get("curvature", 0.0)))
+        last = float(shape.get("curvEnd", first))
+        angle = first * u + (last - first) / (2.0 * length) * u * u
+        along, across = (np.concatenate([[0.0], np.cumsum((f[1:] + f[:-1]) / 2.0 * np.diff(u))])
+                         for f in (np.cos(angle), np.sin(angle)))
+        turned = angle[-1]
+    cos, sin = math.cos(heading), math.sin(heading)
+    heading += turned + (0.0 if forward else math.pi)
+    return (x + cos * along[-1] - sin * across[-1], y + sin * along[-1] + cos * across[-1],
+            heading)
 
-    def __init__(self, roads):
+
+def lights_of_lanes(map_file):
+    """The lights that an OpenDRIVE file has for lanes by name, "12_-1": ids, and where to stop."""
+    root = ElementTree.parse(map_file).getroot()
+    lights = {one.get("id") for one in root.iter("signal") if one.get("dynamic") == "yes"}
+    found = {}
+    for road in root.iter("road"):
+        for one in [*road.iter("signal"), *road.iter("signalReference")]:
+            for span in one.iter("validity") if one.get("id") in lights else ():
+                ends = sorted((int(span.get("fromLane")), int(span.get("toLane"))))
+                for lane in range(ends[0], ends[1] + 1):
+                    line = place_on_road(road, float(one.get("s")), lane < 0)
+                    found.setdefault(f"{road.get('id')}_{lane}", {})[one.get("id")] = line
+    return found
+
+
+class Lights:
+    """Signals of the map by the links that SUMO switches: those that the map has for the lane across
+    the junction; of links without one, those that netconvert names."""
+
+    def __init__(self, map_file, roads):
         self.roads = roads  # of the route
+        self.lines = {}  # traffic light and link to where the map has drivers stop
+        of_lanes = lights_of_lanes(map_file)
         self.links = []  # (traffic light, link, signal)
         self.own = None  # traffic light and link that the vehicle takes
         self.by_lane = {}  # traffic light and link by the lane across the junction
         for light in libsumo.trafficlight.getIDList():
-            for index in range(len(libsumo.trafficlight.getRedYellowGreenState(light))):
-                signal = libsumo.trafficlight.getParameter(light, f"linkSignalID:{index}")
-                for one in signal.split():
-                    self.links.append((light, index, one))
             for index, connections in enumerate(libsumo.trafficlight.getControlledLinks(light)):
-                for connection in connections:
-                    self.by_lane[connection[2]] = (light, index)
+                signals = {}
+                for _, _, across in connections:
+                    self.by_lane[across] = (light, index)
+                    for lane in libsumo.lane.getParameter(across, "origId").split() if across else ():
+                        signals |= of_lanes.get(lane, {})
+                self.lines[light, index] = next(iter(signals.values()), None)
+                named = libsumo.trafficlight.getParameter(light, f"linkSignalID:{index}").split()
+                self.links += [(light, index, one) for one in sorted(signals) or named]
 
     def now(self):
         """The link that the vehicle takes counts for the signals that it shares with others, also
@@ -340,30 +388,32 @@ class Bends:
         return float(np.min(np.sqrt(self.most_mps[here:] ** 2 + 2.0 * COMFORTABLE_MPS2 * ahead_m)))
 
 
-def brakes_behind():
-    """Who brakes harder than is liked directly behind the vehicle."""
-    hard = set()
+def note_brakes_behind(result):
+    """Who brakes harder than is liked directly behind the vehicle, and who as hard as it can."""
     for name in libsumo.vehicle.getIDList():
-        if name == "ego" or libsumo.vehicle.getAcceleration(name) > -COMFORTABLE_MPS2 - 0.1:
+        braking_mps2 = -libsumo.vehicle.getAcceleration(name)
+        if name == "ego" or braking_mps2 < COMFORTABLE_MPS2 + 0.1:
             continue
         leader = libsumo.vehicle.getLeader(name, 60.0)
         if leader and leader[0] == "ego":
-            hard.add(name)
-    return hard
+            result["hard"].add(name)
+            if braking_mps2 > HARDEST_MPS2 - 0.1:
+                result["brakes"].add(name)
 
 
 class RedLights:
-    """Counts links taken that showed red when they were entered, and 4 m on, still: netconvert ends
-    lanes before the lines of the map. Lanes across a junction overlap where they begin, so which one
-    it was is known on the edge behind it."""
+    """Counts links taken that showed red when they were entered, and still past the map's line:
+    netconvert ends lanes up to 15 m before it; 4 m on where the map has no line for the link. Lanes
+    across a junction overlap where they begin, so which one it was is known on the edge behind it."""
     PAST_LINE_M = 4.0
 
-    def __init__(self):
+    def __init__(self, lights):
+        self.lights = lights
         self.passed, self.before = 0, None
         self.red_at_line, self.red_past_it = set(), None
 
-    def judge(self):
-        """After each step."""
+    def judge(self, front):
+        """After each step, with the position of the vehicle's front bumper."""
         lane = libsumo.vehicle.getLaneID("ego")
         if not lane:
             return
@@ -371,8 +421,15 @@ class RedLights:
             if edge_of(lane) in self.red_at_line & (self.red_past_it or set()):
                 self.passed += 1
             self.before, self.red_at_line, self.red_past_it = lane, self.red_now(lane), None
-        elif self.before and self.red_past_it is None and libsumo.vehicle.getLanePosition("ego") > self.PAST_LINE_M:
+        elif self.before and self.red_past_it is None and self.is_past_line(front):
             self.red_past_it = self.red_now(self.before)
+
+    def is_past_line(self, front):
+        line = self.lights.lines.get(self.lights.own)
+        if line is None:
+            return libsumo.vehicle.getLanePosition("ego") > self.PAST_LINE_M
+        x, y, heading = line
+        return (front[0] - x) * math.cos(heading) + (front[1] - y) * math.sin(heading) > 0.0
 
     @staticmethod
     def red_now(lane):
@@ -383,7 +440,7 @@ class RedLights:
 def run(options, net, map_file, density, seed, drive):
     """One drive. Returns what became of it."""
     traffic = Traffic(net, density, seed)
-    result = {"hits": 0, "touches": set(), "brakes": set(), "red": 0, "time_s": None, "why": ""}
+    result = {"hits": 0, "touches": set(), "brakes": set(), "hard": set(), "red": 0, "time_s": None, "why": ""}
     try:
         for _ in range(round(20.0 / STEP_S)):
             traffic.step()
@@ -432,6 +489,7 @@ def drive_by_sumo(options, net, map_file, traffic, edges, result, name, bends=No
         if "ego" not in libsumo.vehicle.getIDList():
             result["time_s"] = libsumo.simulation.getTime() - begin_s
             return
+        note_brakes_behind(result)
         if has_arrived(options, edges, goal):
             result["time_s"] = libsumo.simulation.getTime() - begin_s
             return
@@ -450,7 +508,8 @@ def drive_by_roadbed(options, net, map_file, traffic, edges, result, name):
     goal = lane_pose(net, edges[-1], True)
     log = options.log / (name + ".jsonl") if options.log else None
     pilot = Pilot(options, map_file, start, 0.0, goal, log)
-    lights, red = Lights(roads_of_route(options, map_file, start, goal)), RedLights()
+    lights = Lights(map_file, roads_of_route(options, map_file, start, goal))
+    red = RedLights(lights)
     begin_s = libsumo.simulation.getTime()
     answer = {"reason": "never asked"}
     try:
@@ -468,8 +527,8 @@ def drive_by_roadbed(options, net, map_file, traffic, edges, result, name):
                 return
             result["hits"] += sum("ego" in (hit.collider, hit.victim)
                                   for hit in libsumo.simulation.getCollisions())
-            result["brakes"] |= brakes_behind()
-            red.judge()
+            note_brakes_behind(result)
+            red.judge(front)
             result["red"] = red.passed
             if has_arrived(options, edges, goal[:2]) or answer["at_goal"]:
                 result["time_s"] = libsumo.simulation.getTime() - begin_s
@@ -480,7 +539,7 @@ def drive_by_roadbed(options, net, map_file, traffic, edges, result, name):
 
 
 HEADER = (f"{'map':16} {'veh/km':>6} {'drives':>6} {'done':>5} {'jams':>5} {'hours':>6} {'hits':>5} {'touches':>7} "
-          f"{'brakes':>6} "
+          f"{'brakes':>6} {'hard':>9} "
           f"{'red':>4} {'time':>6} {'alike':>6}")
 
 
@@ -490,13 +549,14 @@ class Row:
     def __init__(self, name, density):
         self.name, self.density = name, density
         self.drives = self.done = self.jams = 0
-        self.hits = self.touches = self.brakes = self.red = 0
+        self.hits = self.touches = self.brakes = self.hard = self.their_hard = self.red = 0
         self.hours, self.ratios, self.alike = 0.0, [], []
 
     @staticmethod
     def of_all(rows):
         row = Row("together", "")
-        for name in ("drives", "done", "jams", "hits", "touches", "brakes", "red", "hours", "ratios", "alike"):
+        for name in ("drives", "done", "jams", "hits", "touches", "brakes", "hard", "their_hard", "red",
+                     "hours", "ratios", "alike"):
             setattr(row, name, sum((getattr(one, name) for one in rows), getattr(row, name)))
         return row
 
@@ -509,26 +569,28 @@ class Row:
         self.hits += own["hits"]
         self.touches += len(own["touches"])
         self.brakes += len(own["brakes"])
+        self.hard += len(own["hard"])
         self.red += own["red"]
-        if any(own[name] for name in ("why", "hits", "touches", "red", "brakes")):
+        if any(own[name] for name in ("why", "hits", "touches", "red", "brakes", "hard")):
             print(f"  {self.name} {self.density} seed {seed}: {own['hits']} hits, "
                   f"{len(own['touches'])} touches, {own['red']} red, "
-                  f"{len(own['brakes'])} brakes; {own['why']}", file=sys.stderr, flush=True)
+                  f"{len(own['brakes'])} brakes, {len(own['hard'])} hard; {own['why']}", file=sys.stderr, flush=True)
         for driver, ratios in ((drive_by_sumo, self.ratios), (drive_alike, self.alike)):
             theirs = drive(driver)
-            if driver is drive_by_sumo and theirs and not own["time_s"] and not theirs["time_s"]:
-                self.jams += 1
+            if driver is drive_by_sumo and theirs:
+                self.jams += not own["time_s"] and not theirs["time_s"]
+                self.their_hard += len(theirs["hard"])
             if own["time_s"] and theirs and theirs["time_s"]:
                 ratios.append(own["time_s"] / theirs["time_s"])
 
     def is_good(self):
-        return self.hits == self.touches == self.red == 0 and self.done + self.jams == self.drives
+        return self.hits == self.touches == self.brakes == self.red == 0 and self.done + self.jams == self.drives
 
     def __str__(self):
         time, alike = (f"{statistics.median(ratios):6.2f}" if ratios else "     -"
                        for ratios in (self.ratios, self.alike))
         return (f"{self.name:16} {self.density:>6} {self.drives:6} {self.done:5} {self.jams:5} {self.hours:6.2f} "
-                f"{self.hits:5} {self.touches:7} {self.brakes:6} {self.red:4} {time} {alike}")
+                f"{self.hits:5} {self.touches:7} {self.brakes:6} {f'{self.hard}, {self.their_hard}':>9} {self.red:4} {time} {alike}")
 
 
 def main():
