@@ -29,6 +29,7 @@ constexpr double kLeastAlong = 0.8;    // cosine of the angle up to which somebo
 constexpr double kBesideLane_m = 0.5;  // more, from who comes along it
 constexpr double kLooks_s = 3.0;       // where more is seen, before driving on
 constexpr double kGapsFrom_m = 15.0;   // beyond the way to stop on
+constexpr int kRollsOn = 5;            // steps past a line while who goes first comes onto the path
 
 /// How obstacles that are no lead drive now; one entry per obstacle.
 struct Others {
@@ -53,19 +54,24 @@ std::vector<bool> crossing_now(const PathProfile& profile, const StGraph& occupa
   return crossing;
 }
 
+bool is_on_path(const StGraph& occupancy, int step, std::size_t obstacle) {
+  return std::ranges::any_of(occupancy.at(step),
+                             [&](const StInterval& part) { return part.obstacle == obstacle; });
+}
+
+/// Who is on the path already, and drives along it.
+bool is_lead(const StGraph& occupancy, const Others& others, std::size_t obstacle) {
+  return !others.crossing[obstacle] && is_on_path(occupancy, 0, obstacle);
+}
+
 /// Whether an obstacle that is not the lead blocks a place at one of the steps `from` to `to`.
 std::optional<std::size_t> who_blocks(const StGraph& occupancy, const Others& others, int from,
                                       int to, double ahead_m) {
-  const auto is_lead = [&](std::size_t obstacle) {
-    return !others.crossing[obstacle] &&
-           std::ranges::any_of(occupancy.at(0),
-                               [&](const StInterval& part) { return part.obstacle == obstacle; });
-  };
   for (int k = std::max(0, from); k <= to; ++k) {
     for (const StInterval& part : occupancy.at(k)) {
       const bool is_behind = part.from_m < 0.0 || others.following[part.obstacle];
       if (is_behind || ahead_m <= part.from_m || ahead_m >= part.to_m) continue;
-      if (!is_lead(part.obstacle)) return part.obstacle;
+      if (!is_lead(occupancy, others, part.obstacle)) return part.obstacle;
     }
   }
   return std::nullopt;
@@ -83,6 +89,27 @@ std::optional<Met> first_met(const StGraph& occupancy, const Others& others,
     const int k = static_cast<int>(i);
     const auto who = who_blocks(occupancy, others, k - gap.before, k + gap.after, ahead_m[i]);
     if (who) return Met{*who, StGraph::kStep_s * k};
+  }
+  return std::nullopt;
+}
+
+/// Who would come onto the path ahead of the vehicle when that is past the line already, where the
+/// way to cross is long: they cannot tell that it will let them go first.
+std::optional<Met> who_goes_first(const StGraph& occupancy, const Others& others,
+                                  const std::vector<double>& ahead_m, double line_m,
+                                  double clear_m) {
+  const auto past_line = std::ranges::lower_bound(ahead_m, line_m);
+  const int at_line = static_cast<int>(past_line - ahead_m.begin()) + kRollsOn;
+  for (int k = at_line; k < static_cast<int>(ahead_m.size()); ++k) {
+    for (const StInterval& part : occupancy.at(k)) {
+      const bool is_ahead =
+          part.from_m > ahead_m[static_cast<std::size_t>(k)] && part.from_m < clear_m;
+      if (!is_ahead || others.following[part.obstacle]) continue;
+      if (is_lead(occupancy, others, part.obstacle)) continue;
+      if (!is_on_path(occupancy, at_line, part.obstacle)) {
+        return Met{part.obstacle, StGraph::kStep_s * k};
+      }
+    }
   }
   return std::nullopt;
 }
@@ -245,7 +272,12 @@ std::optional<std::string> RightOfWay::who_comes(const StopPoint& place, const V
     following.push_back(is_following(obstacle, view.t_s, vehicle));
   }
   const Others others{crossing_now(way.profile, occupancy, view), std::move(following)};
-  if (const auto met = first_met(occupancy, others, way.ahead_m, gap)) {
+  auto met = first_met(occupancy, others, way.ahead_m, gap);
+  if (!met && place.kind != StopKind::turn && gap.after == kGapToTake.after) {
+    met = who_goes_first(occupancy, others, way.ahead_m, left_m(place, view),
+                         place.clear_s_m - view.s_m);
+  }
+  if (met) {
     const Obstacle& obstacle = view.traffic.obstacles[met->obstacle];
     return fmt::format("{}: {} {} would be met in {:.1f} s", place.name, obstacle.kind, obstacle.id,
                        met->after_s);

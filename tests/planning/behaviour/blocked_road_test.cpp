@@ -81,7 +81,7 @@ TEST_F(BehindSomebody, WhoMovesBeginsTheWaitAnew) {
   stand_behind({car_at("first", 60.0), car_at("second", 70.0, 7.0)});
   EXPECT_NEAR(blocked_at_s().value_or(1e9), 17.0, 0.151) << "a queue that moves";
   stand_behind({car_at("first", 60.0), car_at("second", 70.0), car_at("third", 85.0, 8.0)});
-  EXPECT_NEAR(blocked_at_s().value_or(1e9), 18.0, 0.151) << "its head moves";
+  EXPECT_NEAR(blocked_at_s().value_or(1e9), 68.0, 0.151) << "its head moves";
   stand_behind({car_at("first", 60.0), car_at("far", 90.0, 7.0)});
   EXPECT_NEAR(blocked_at_s().value_or(1e9), 10.0, 0.051) << "not of the same queue";
 }
@@ -99,6 +99,15 @@ TEST_F(BehindSomebody, WhoMayWaitAtASignIsGivenAMinute) {
   stand_behind({car_at("first", 60.0)});
   place(planning::StopKind::give_way, 62.25 + 2.0);
   EXPECT_NEAR(blocked_at_s().value_or(1e9), 60.0, 0.051);
+}
+
+TEST_F(BehindSomebody, AJamIsGivenAMinuteAndNotPassedLikeParkedCars) {
+  stand_behind({car_at("first", 60.0), car_at("second", 70.0)});
+  ASSERT_NEAR(blocked_at_s().value_or(1e9), 10.0, 0.051);
+  EXPECT_EQ(look(20.0)->blockers.size(), 2U);
+  stand_behind({car_at("first", 60.0), car_at("second", 70.0), car_at("third", 85.0)});
+  EXPECT_NEAR(blocked_at_s().value_or(1e9), 60.0, 0.051);
+  EXPECT_THAT(look(70.0)->blockers, testing::IsEmpty());
 }
 
 TEST_F(BehindSomebody, NothingIsBlockedWhereARuleIsWaitedForOrTheVehicleMoves) {

@@ -173,6 +173,19 @@ TEST_F(WaitingAtAPlace, GapIsTakenOnlyIfNobodyComesWithinIt) {
   }
 }
 
+// At 8 to 10 m/s the vehicle is past its line in 2.5 s, and after 35 m more in the way of those who
+// cross, in 5.7 s. Who crosses at 4 s has passed by then, but cannot know that the vehicle lets
+// him.
+TEST_F(WaitingAtAPlace, NobodyIsLetFirstFromPastTheLine) {
+  for (const auto& [at_s, must_wait] : {std::pair{2.4, false}, {4.0, true}}) {
+    world_.stop_points = {
+        {.kind = planning::StopKind::give_way, .s_m = 30.0, .clear_s_m = 70.0, .name = "place 1"}};
+    world_.obstacles = {crossing_at(at_s)};
+    planning::RightOfWay rules(scenario_.vehicle, scenario_.options, world_);
+    EXPECT_EQ(look(rules, 0.0, kPlace_m - 30.0 + 22.0, 8.0).has_value(), must_wait) << at_s;
+  }
+}
+
 TEST_F(WaitingAtAPlace, WhoIsMetIsNamed) {
   place(planning::StopKind::turn);
   world_.obstacles = {crossing_at(3.0)};
