@@ -146,7 +146,8 @@ constexpr std::array<Format, 13> kFormats = {{
      .sniff = [](const FileContent& content) { return has_root(content, "OpenDRIVE"); },
      .read =
          [](std::string bytes, const std::string& name, const LoadOptions& options) {
-           return RoadMap(opendrive::read(XmlDocument(std::move(bytes), name), options));
+           return RoadMap(opendrive::read(XmlDocument(std::move(bytes), name), options),
+                          options.threads);
          },
      .judge = judge_open_drive,
      .rules = open_drive_rules,
@@ -191,7 +192,7 @@ constexpr std::array<Format, 13> kFormats = {{
      .sniff = [](const FileContent& content) { return content.root == "osm"; },
      .read =
          [](std::string bytes, const std::string& name, const LoadOptions& options) {
-           return RoadMap(lanelet2::read(std::move(bytes), name, options.threads));
+           return RoadMap(lanelet2::read(std::move(bytes), name, options.threads), options.threads);
          },
      .judge = judge_lanelet2,
      .rules = lanelet2_rules,

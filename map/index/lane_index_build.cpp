@@ -65,6 +65,7 @@ std::size_t nearest_vertex(const geometry::Ring& ring, const Eigen::Vector2d& po
 // Indices that cut points [first, last] (or backwards) into `pieces` runs of equal length.
 template <typename PointAt>
 std::vector<std::uint32_t> cuts(std::size_t count, std::size_t pieces, const PointAt& at) {
+  if (pieces == 1) return {0, static_cast<std::uint32_t>(count - 1)};
   std::vector<double> along_m(count, 0.0);
   for (std::size_t i = 1; i < count; ++i) along_m[i] = along_m[i - 1] + (at(i) - at(i - 1)).norm();
   std::vector<std::uint32_t> made;

@@ -1,21 +1,49 @@
 #include "roadbed/map/index/road_map_index.h"
 
 #include <algorithm>
-#include <numeric>
+#include <array>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-namespace roadbed::map::inline index {
+#include "roadbed/map/files/in_threads.h"
 
-RoadMapIndex RoadMapIndex::of(const LazyList<Lane>& lanes) {
-  std::vector<std::uint32_t> by_name(lanes.size());
-  std::iota(by_name.begin(), by_name.end(), 0U);
-  std::sort(by_name.begin(), by_name.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::tie(lanes[a].name, a) < std::tie(lanes[b].name, b);
+namespace roadbed::map::inline index {
+namespace {
+
+/// A lane with how its name begins, which most names are told apart by, without the lane.
+struct NamedLane {
+  std::array<unsigned char, 16> head{};
+  std::uint32_t lane = 0;
+};
+
+std::vector<std::uint32_t> in_order_of_name(const LazyList<Lane>& lanes) {
+  std::vector<NamedLane> named(lanes.size());
+  for (std::uint32_t i = 0; i < named.size(); ++i) {
+    const std::string& name = lanes[i].name;
+    std::copy_n(name.begin(), std::min(name.size(), named[i].head.size()), named[i].head.begin());
+    named[i].lane = i;
+  }
+  std::ranges::sort(named, [&](const NamedLane& a, const NamedLane& b) {
+    if (a.head != b.head) return a.head < b.head;
+    return std::tie(lanes[a.lane].name, a.lane) < std::tie(lanes[b.lane].name, b.lane);
   });
-  return {LaneIndex(lanes), FlatArray<std::uint32_t>(std::move(by_name))};
+  std::vector<std::uint32_t> order;
+  order.reserve(named.size());
+  for (const NamedLane& one : named) order.push_back(one.lane);
+  return order;
+}
+
+}  // namespace
+
+RoadMapIndex RoadMapIndex::of(const LazyList<Lane>& lanes, int threads) {
+  RoadMapIndex index;
+  in_threads(2, threads, [&](std::size_t task) {
+    if (task == 0) index.lanes = LaneIndex(lanes);
+    if (task == 1) index.by_name = FlatArray<std::uint32_t>(in_order_of_name(lanes));
+  });
+  return index;
 }
 
 std::optional<LaneId> RoadMapIndex::find(const LazyList<Lane>& in, std::string_view name) const {

@@ -24,7 +24,8 @@ struct RoadMapIndex {
   /// the map does not look into. Empty: nothing.
   FlatArray<char> routing = {};
 
-  static RoadMapIndex of(const LazyList<Lane>& lanes);
+  /// @param threads  that may be used.
+  static RoadMapIndex of(const LazyList<Lane>& lanes, int threads = 1);
 
   /// O(log lanes).
   std::optional<LaneId> find(const LazyList<Lane>& in, std::string_view name) const;

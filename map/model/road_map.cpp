@@ -87,10 +87,10 @@ LazyMapContent kept(RoadMapParts parts) {
 
 }  // namespace
 
-RoadMap::RoadMap(RoadMapParts parts)
+RoadMap::RoadMap(RoadMapParts parts, int threads)
     : content_(kept(std::move(parts))),
       graph_(content_.links),
-      index_(std::make_unique<const RoadMapIndex>(RoadMapIndex::of(content_.lanes))) {
+      index_(std::make_unique<const RoadMapIndex>(RoadMapIndex::of(content_.lanes, threads))) {
   graph_.check();
 }
 

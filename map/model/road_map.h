@@ -27,8 +27,9 @@ using LazyMapContent = MapContent<LazyList>;
 /// users see the source's raw coordinates only: tools translate with `to_map` and `to_source`.
 class RoadMap {
  public:
+  /// @param threads  that may be used.
   /// @throws std::invalid_argument if ids are not in order or a link names nothing.
-  explicit RoadMap(RoadMapParts parts);
+  explicit RoadMap(RoadMapParts parts, int threads = 1);
 
   /// Of a compiled map, whose things check themselves when they are made.
   RoadMap(LazyMapContent content, RoadMapIndex index);
