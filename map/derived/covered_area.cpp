@@ -1,11 +1,15 @@
 #include "roadbed/map/derived/covered_area.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <span>
 #include <utility>
 
 #include "roadbed/geometry/index/box_tree.h"
+#include "roadbed/map/files/in_threads.h"
 
 namespace roadbed::map::inline derived {
 namespace {
@@ -19,6 +23,7 @@ struct RingPart {
   const Ring* ring;
   Box box;
   std::uint32_t group = GroupedRing::kNoGroup;
+  std::uint32_t points = static_cast<std::uint32_t>(ring->size());  // asked for more often
 };
 
 /// An edge that is not level, from its lower end to its upper one.
@@ -38,16 +43,20 @@ struct Passage {
   double middle() const { return 0.5 * (low_x + high_x); }
 };
 
-/// Stops work that grows beyond its bounds.
+/// What is left of the steps that may be taken; negative where work grew beyond its bounds.
 struct Budget {
-  std::size_t steps;
-  bool is_spent = false;
+  std::int64_t left;
 
-  void spend(std::size_t more) {
-    is_spent = is_spent || more > steps;
-    steps -= std::min(more, steps);
-  }
+  void spend(std::size_t steps) { left -= static_cast<std::int64_t>(steps); }
+  bool is_spent() const { return left < 0; }
 };
+
+/// The same of threads together.
+using SharedBudget = std::atomic<std::int64_t>;
+
+CoveredArea operator+(const CoveredArea& a, const CoveredArea& b) {
+  return {a.all_m2 + b.all_m2, a.groups_m2 + b.groups_m2};
+}
 
 /// Adds up what is covered between two heights between which no edge ends.
 class Slab {
@@ -59,7 +68,7 @@ class Slab {
   /// Leaves the edges in the order in which they pass the middle of the slab, or of its lower part.
   CoveredArea area(std::vector<Passage>& edges, double height_m, int depth, Budget& budget) {
     budget.spend(edges.size() + 1);
-    if (budget.is_spent) return {};
+    if (budget.is_spent()) return {};
     sort(edges);
     constexpr int kDeepest = 40;
     const std::optional<double> fraction = crossing(edges);
@@ -73,8 +82,7 @@ class Slab {
       edges[i].high_x = upper[i].low_x = x;
     }
     const CoveredArea below = area(edges, *fraction * height_m, depth + 1, budget);
-    const CoveredArea above = area(upper, (1.0 - *fraction) * height_m, depth + 1, budget);
-    return {below.all_m2 + above.all_m2, below.groups_m2 + above.groups_m2};
+    return below + area(upper, (1.0 - *fraction) * height_m, depth + 1, budget);
   }
 
  private:
@@ -187,7 +195,7 @@ CoveredArea swept(std::span<const RingPart> pieces, Budget& budget) {
   std::vector<Edge> active;
   std::vector<Passage> passages;
   std::size_t next = 0;
-  for (std::size_t i = 0; i + 1 < heights.size() && !budget.is_spent; ++i) {
+  for (std::size_t i = 0; i + 1 < heights.size() && !budget.is_spent(); ++i) {
     const double low = heights[i], high = heights[i + 1];
     std::erase_if(active, [&](const Edge& edge) { return edge.high.y() <= low; });
     for (; next < edges.size() && edges[next].low.y() <= low; ++next) active.push_back(edges[next]);
@@ -268,15 +276,23 @@ CoveredArea alone(const RingPart& piece) {
   return {area_m2, piece.group == GroupedRing::kNoGroup ? 0.0 : area_m2};
 }
 
-CoveredArea area_of(const std::vector<RingPart>& pieces, Budget& budget) {
+CoveredArea swept(std::span<const RingPart> pieces, SharedBudget& shared) {
+  const std::int64_t left = shared;
+  Budget budget{left};
+  const CoveredArea sum = swept(pieces, budget);
+  shared -= left - budget.left;
+  return sum;
+}
+
+CoveredArea area_of(const std::vector<RingPart>& pieces, SharedBudget& budget, int threads) {
   Box window;
   std::size_t points = 0;
   for (const RingPart& piece : pieces) {
     window.extend(piece.box);
-    points += piece.ring->size();
+    points += piece.points;
   }
-  budget.spend(points);
-  if (pieces.empty() || budget.is_spent) return {};
+  budget -= static_cast<std::int64_t>(points);
+  if (pieces.empty() || budget < 0) return {};
   if (pieces.size() == 1 && is_convex(*pieces.front().ring)) return alone(pieces.front());
   const int axis = window.sizes().x() >= window.sizes().y() ? 0 : 1;
   const double middle = window.center()[axis];
@@ -292,14 +308,17 @@ CoveredArea area_of(const std::vector<RingPart>& pieces, Budget& budget) {
       2 * static_cast<std::size_t>(std::ranges::count_if(pieces, straddles)) > pieces.size();
   if (is_small || is_bundle) return swept(pieces, budget);
   const Halves halves(pieces, axis, middle);
-  const CoveredArea below = area_of(halves.below, budget);
-  const CoveredArea above = area_of(halves.above, budget);
-  return {below.all_m2 + above.all_m2, below.groups_m2 + above.groups_m2};
+  if (threads < 2) return area_of(halves.below, budget, 1) + area_of(halves.above, budget, 1);
+  std::array<CoveredArea, 2> areas;
+  in_threads(2, threads, [&](std::size_t half) {
+    areas[half] = area_of(half == 0 ? halves.below : halves.above, budget, threads / 2);
+  });
+  return areas[0] + areas[1];
 }
 
 }  // namespace
 
-std::optional<CoveredArea> covered_area(const std::vector<GroupedRing>& rings) {
+std::optional<CoveredArea> covered_area(const std::vector<GroupedRing>& rings, int threads) {
   std::vector<RingPart> pieces;
   std::size_t points = 0;
   for (const auto& [ring, group] : rings) {
@@ -307,9 +326,9 @@ std::optional<CoveredArea> covered_area(const std::vector<GroupedRing>& rings) {
     if (ring->size() >= 3) pieces.push_back({ring, geometry::box_around(*ring), group});
   }
   constexpr std::size_t kStepsEach = 500, kSteps = 100'000;
-  Budget budget{kSteps + kStepsEach * points};
-  const CoveredArea area = area_of(pieces, budget);
-  if (budget.is_spent) return std::nullopt;
+  SharedBudget budget = static_cast<std::int64_t>(kSteps + kStepsEach * points);
+  const CoveredArea area = area_of(pieces, budget, threads);
+  if (budget < 0) return std::nullopt;
   return area;
 }
 

@@ -28,7 +28,8 @@ struct CoveredArea {
 /// widths change linearly. Exact up to rounding: a crossing that rounding hides costs no more than
 /// the sliver that it bounds. O(N log N + A) for N edges, A the edges that are met slab by slab,
 /// which grows with how many rings lie upon each other.
+/// @param threads  that may be used; the sum is the same for any number.
 /// @return none where so many do that it would take over some hundred steps an edge.
-std::optional<CoveredArea> covered_area(const std::vector<GroupedRing>& rings);
+std::optional<CoveredArea> covered_area(const std::vector<GroupedRing>& rings, int threads = 1);
 
 }  // namespace roadbed::map::derived

@@ -117,18 +117,18 @@ MapTotals TotalsCounter::totals() && {
   return std::move(totals_);
 }
 
-std::optional<MapAreas> covered_areas(const RoadMap& road_map) {
+std::optional<MapAreas> covered_areas(const RoadMap& road_map, int threads) {
   const std::vector<std::uint32_t> junctions = junction_of_lanes(road_map);
   std::vector<GroupedRing> rings;
   for (const Lane& lane : road_map.lanes()) {
     if (is_drivable(lane.type)) rings.push_back({&lane.polygon, junctions[lane.id.index]});
   }
-  const std::optional<CoveredArea> covered = covered_area(rings);
+  const std::optional<CoveredArea> covered = covered_area(rings, threads);
   if (!covered) return std::nullopt;
   return MapAreas{covered->all_m2, covered->groups_m2};
 }
 
-MapTotals totals_of(const RoadMap& road_map) {
+MapTotals totals_of(const RoadMap& road_map, int threads) {
   if (road_map.index().totals.size() > 0) return stored_totals(road_map.index());
   TotalsCounter counter;
   const auto count = [&](const char*, const auto&, const auto& list) {
@@ -136,7 +136,7 @@ MapTotals totals_of(const RoadMap& road_map) {
   };
   fields::lists(count, road_map.content());
   MapTotals totals = std::move(counter).totals();
-  if (road_map.lanes().size() >= kLanesForAreas) totals.areas = covered_areas(road_map);
+  if (road_map.lanes().size() >= kLanesForAreas) totals.areas = covered_areas(road_map, threads);
   return totals;
 }
 

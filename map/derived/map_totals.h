@@ -62,11 +62,12 @@ class TotalsCounter {
 };
 
 /// None where lanes lie upon each other by the thousand.
-std::optional<MapAreas> covered_areas(const RoadMap& road_map);
+std::optional<MapAreas> covered_areas(const RoadMap& road_map, int threads = 1);
 
 /// The totals of a map: those in its compiled form, else added up now, which touches everything.
+/// @param threads  that may be used.
 /// @throws InputError if the compiled map is damaged.
-MapTotals totals_of(const RoadMap& road_map);
+MapTotals totals_of(const RoadMap& road_map, int threads = 1);
 
 /// Totals as bytes, in a compiled map.
 std::string write_totals(const MapTotals& totals);

@@ -152,7 +152,7 @@ class ImportCommand : public Command {
     std::optional<map::MapTotals> totals;
     map::in_threads(2, threads, [&](std::size_t task) {
       if (task == 0) network = planning::write_route_network(planning::route_network_of(road_map));
-      if (task == 1) totals = map::totals_of(road_map);
+      if (task == 1) totals = map::totals_of(road_map, threads);
     });
     if (map::is_standard_stream(output_)) {
       return map::write_to_standard_output(
