@@ -200,6 +200,7 @@ void unfold_lanes(std::vector<LaneRun>& runs, const Document& document) {
 template <typename T>
 void append(std::vector<T>& from, std::vector<T>& to) {
   to.insert(to.end(), std::move_iterator(from.begin()), std::move_iterator(from.end()));
+  from = {};  // while it is in the cache
 }
 
 // Numbers the lanes of all runs, one run behind the other.

@@ -29,17 +29,30 @@ class DocumentReader {
     document_.remarks = std::move(lists_.remarks);
     document_.unused = std::move(lists_.unused);
     place_nodes();
-    document_.node_index = index_of(document_.nodes, "node");
+    make_indices();
+    remark_repeated(document_.node_index, "node");
     add_way_nodes();
-    hand_out(document_.ways, lists_.way_tags);
-    hand_out(document_.relations, lists_.relation_tags);
-    hand_out_members();
-    document_.way_index = index_of(document_.ways, "way");
-    document_.relation_index = index_of(document_.relations, "relation");
+    remark_repeated(document_.way_index, "way");
+    remark_repeated(document_.relation_index, "relation");
     return std::move(document_);
   }
 
  private:
+  void make_indices() {
+    in_threads(3, threads_, [&](std::size_t task) {
+      if (task == 0) document_.node_index = index_of(document_.nodes);
+      if (task == 1) {
+        hand_out(document_.ways, lists_.way_tags);
+        document_.way_index = index_of(document_.ways);
+      }
+      if (task == 2) {
+        hand_out(document_.relations, lists_.relation_tags);
+        hand_out_members();
+        document_.relation_index = index_of(document_.relations);
+      }
+    });
+  }
+
   // Gives elements their tags, when the list of all tags grows no more.
   template <typename Element>
   void hand_out(std::vector<Element>& elements, const std::vector<ElementLists::Range>& ranges) {
@@ -157,20 +170,21 @@ class DocumentReader {
   }
 
   template <typename Element>
-  IdIndex index_of(const std::vector<Element>& elements, const char* kind) {
+  static IdIndex index_of(const std::vector<Element>& elements) {
     std::vector<std::pair<std::int64_t, std::uint32_t>> ids;
     ids.reserve(elements.size());
     for (const Element& element : elements) {
       ids.emplace_back(element.id, static_cast<std::uint32_t>(ids.size()));
     }
-    IdIndex index(std::move(ids));
-    if (index.repeated() > 0) {
-      document_.remarks.push_back(
-          {"import.duplicate-id", true, "file", 0,
-           fmt::format("{} {}s have an id that came before; the first of each is used",
-                       index.repeated(), kind)});
-    }
-    return index;
+    return IdIndex(std::move(ids));
+  }
+
+  void remark_repeated(const IdIndex& index, const char* kind) {
+    if (index.repeated() == 0) return;
+    document_.remarks.push_back(
+        {"import.duplicate-id", true, "file", 0,
+         fmt::format("{} {}s have an id that came before; the first of each is used",
+                     index.repeated(), kind)});
   }
 
   int threads_;
