@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "roadbed/geometry/index/box_tree.h"
+#include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/files/in_threads.h"
 
 namespace roadbed::map::inline derived {
@@ -23,7 +24,6 @@ struct RingPart {
   const Ring* ring;
   Box box;
   std::uint32_t group = GroupedRing::kNoGroup;
-  std::uint32_t points = static_cast<std::uint32_t>(ring->size());  // asked for more often
 };
 
 /// An edge that is not level, from its lower end to its upper one.
@@ -43,16 +43,14 @@ struct Passage {
   double middle() const { return 0.5 * (low_x + high_x); }
 };
 
-/// What is left of the steps that may be taken; negative where work grew beyond its bounds.
+/// What threads together have left of the steps that may be taken; negative where work grew beyond
+/// its bounds.
 struct Budget {
-  std::int64_t left;
+  std::atomic<std::int64_t> left;
 
   void spend(std::size_t steps) { left -= static_cast<std::int64_t>(steps); }
   bool is_spent() const { return left < 0; }
 };
-
-/// The same of threads together.
-using SharedBudget = std::atomic<std::int64_t>;
 
 CoveredArea operator+(const CoveredArea& a, const CoveredArea& b) {
   return {a.all_m2 + b.all_m2, a.groups_m2 + b.groups_m2};
@@ -276,23 +274,15 @@ CoveredArea alone(const RingPart& piece) {
   return {area_m2, piece.group == GroupedRing::kNoGroup ? 0.0 : area_m2};
 }
 
-CoveredArea swept(std::span<const RingPart> pieces, SharedBudget& shared) {
-  const std::int64_t left = shared;
-  Budget budget{left};
-  const CoveredArea sum = swept(pieces, budget);
-  shared -= left - budget.left;
-  return sum;
-}
-
-CoveredArea area_of(const std::vector<RingPart>& pieces, SharedBudget& budget, int threads) {
+CoveredArea area_of(const std::vector<RingPart>& pieces, Budget& budget, int threads) {
   Box window;
   std::size_t points = 0;
   for (const RingPart& piece : pieces) {
     window.extend(piece.box);
-    points += piece.points;
+    points += piece.ring->size();
   }
-  budget -= static_cast<std::int64_t>(points);
-  if (pieces.empty() || budget < 0) return {};
+  budget.spend(points);
+  if (pieces.empty() || budget.is_spent()) return {};
   if (pieces.size() == 1 && is_convex(*pieces.front().ring)) return alone(pieces.front());
   const int axis = window.sizes().x() >= window.sizes().y() ? 0 : 1;
   const double middle = window.center()[axis];
@@ -325,10 +315,9 @@ std::optional<CoveredArea> covered_area(const std::vector<GroupedRing>& rings, i
     points += ring->size();
     if (ring->size() >= 3) pieces.push_back({ring, geometry::box_around(*ring), group});
   }
-  constexpr std::size_t kStepsEach = 500, kSteps = 100'000;
-  SharedBudget budget = static_cast<std::int64_t>(kSteps + kStepsEach * points);
+  Budget budget{static_cast<std::int64_t>(geometry::most_steps(points))};
   const CoveredArea area = area_of(pieces, budget, threads);
-  if (budget < 0) return std::nullopt;
+  if (budget.is_spent()) return std::nullopt;
   return area;
 }
 

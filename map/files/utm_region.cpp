@@ -11,11 +11,15 @@ GeographicPoint geographic(const Eigen::Vector2d& degrees) { return {degrees.y()
 
 }  // namespace
 
+std::string crs_of_utm(int zone, bool south) {
+  return fmt::format("EPSG:{}", epsg_of_utm(zone, south));
+}
+
 UtmRegion::UtmRegion(const Eigen::Vector2d& first_deg) {
   const int zone = utm_zone(geographic(first_deg));
   const bool south = first_deg.y() < 0.0;
   grid_ = utm_grid(zone, south);
-  crs_ = fmt::format("EPSG:{}", epsg_of_utm(zone, south));
+  crs_ = crs_of_utm(zone, south);
 }
 
 Eigen::Vector2d UtmRegion::metres_of(const Eigen::Vector2d& degrees, const std::string& file,

@@ -7,14 +7,17 @@
 
 namespace roadbed::map::inline files {
 
+/// "EPSG:32632", "EPSG:32732" in the south.
+std::string crs_of_utm(int zone, bool south);
+
 /// The plane for a file of longitudes and latitudes of one region: the UTM grid of its first place.
 class UtmRegion {
  public:
   /// @param first_deg  longitude and latitude.
   explicit UtmRegion(const Eigen::Vector2d& first_deg);
 
-  /// "EPSG:32632".
   const std::string& crs() const { return crs_; }
+  const TransverseMercator& grid() const { return grid_; }
 
   /// Easting and northing [m] of a longitude and latitude [°].
   /// @throws InputError naming `file` and `element` if it is over 60° from the zone, where lengths

@@ -12,6 +12,7 @@
 #include "roadbed/map/files/coordinate_limits.h"
 #include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/files/mgrs.h"
+#include "roadbed/map/files/utm_region.h"
 
 namespace roadbed::map::lanelet2 {
 namespace {
@@ -45,10 +46,6 @@ double worst_difference_m(const TransverseMercator& grid, std::span<const NodePl
     worst_m = std::max(worst_m, worst_here_m);
   });
   return worst_m;
-}
-
-std::string crs_of_utm(int zone, bool south) {
-  return fmt::format("EPSG:{}", epsg_of_utm(zone, south));
 }
 
 // "+key=value +flag …" as keys and values; a flag has an empty value.
@@ -139,10 +136,9 @@ Frame::Frame(std::span<const NodePlace> nodes, std::string_view mgrs_code, int t
   }
   const auto first = std::find_if(nodes.begin(), nodes.end(), is_geographic);
   if (first == nodes.end()) return;
-  const int zone = utm_zone(geographic(*first));
-  const bool south = first->latitude_deg < 0.0;
-  grid_ = utm_grid(zone, south);
-  crs_ = crs_of_utm(zone, south);
+  const UtmRegion region({first->longitude_deg, first->latitude_deg});
+  grid_ = region.grid();
+  crs_ = region.crs();
 }
 
 void Frame::find_local_grid(std::span<const NodePlace> nodes, std::string_view mgrs_code,

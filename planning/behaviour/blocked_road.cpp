@@ -70,15 +70,15 @@ bool BlockedRoad::may_wait(double queue_front_s_m) const {
   const auto station = [&](map::LaneId lane, double s_m) {
     return task_.line.project(task_.road_map.lane(lane).pose_at(s_m).position()).s_m;
   };
-  return std::ranges::any_of(task_.stop_points,
-                             [&](const StopPoint& place) {
-                               return place.kind != StopKind::light &&
-                                      is_here(place.s_m, place.s_m);
-                             }) ||
-         std::ranges::any_of(task_.route.legs, [&](const RouteLeg& leg) {
-           return task_.road_map.lane(leg.lane).junction &&
-                  is_here(station(leg.lane, leg.from_s_m), station(leg.lane, leg.to_s_m));
-         });
+  const auto is_line_here = [&](const StopPoint& place) {
+    return place.kind != StopKind::light && is_here(place.s_m, place.s_m);
+  };
+  const auto is_junction_here = [&](const RouteLeg& leg) {
+    return task_.road_map.lane(leg.lane).junction &&
+           is_here(station(leg.lane, leg.from_s_m), station(leg.lane, leg.to_s_m));
+  };
+  return std::ranges::any_of(task_.stop_points, is_line_here) ||
+         std::ranges::any_of(task_.route.legs, is_junction_here);
 }
 
 std::optional<BlockedRoad::Decision> BlockedRoad::look(const View& view) {

@@ -29,7 +29,7 @@ constexpr double kLeastAlong = 0.8;    // cosine of the angle up to which somebo
 constexpr double kBesideLane_m = 0.5;  // more, from who comes along it
 constexpr double kLooks_s = 3.0;       // where more is seen, before driving on
 constexpr double kGapsFrom_m = 15.0;   // beyond the way to stop on
-constexpr int kRollsOn = 5;            // steps past a line while who goes first comes onto the path
+constexpr int kRollsOn_steps = 5;      // past a line, while who goes first comes onto the path
 
 /// How obstacles that are no lead drive now; one entry per obstacle.
 struct Others {
@@ -99,7 +99,7 @@ std::optional<Met> who_goes_first(const StGraph& occupancy, const Others& others
                                   const std::vector<double>& ahead_m, double line_m,
                                   double clear_m) {
   const auto past_line = std::ranges::lower_bound(ahead_m, line_m);
-  const int at_line = static_cast<int>(past_line - ahead_m.begin()) + kRollsOn;
+  const int at_line = static_cast<int>(past_line - ahead_m.begin()) + kRollsOn_steps;
   for (int k = at_line; k < static_cast<int>(ahead_m.size()); ++k) {
     for (const StInterval& part : occupancy.at(k)) {
       const bool is_ahead =
@@ -236,6 +236,11 @@ std::optional<std::string> RightOfWay::why_wait(const StopPoint& place, const Vi
   return who_may_come(place, view);
 }
 
+/// Whether a gap is looked for from a sign or a join's line, behind which the vehicle still is.
+bool RightOfWay::sets_off_from(const StopPoint& place, Gap gap) {
+  return place.kind != StopKind::turn && gap.after == kGapToTake.after;
+}
+
 /// The way across, and when the vehicle is where on it.
 struct RightOfWay::Crossing {
   PathProfile profile;
@@ -246,7 +251,7 @@ struct RightOfWay::Crossing {
 RightOfWay::Crossing RightOfWay::crossing_of(const StopPoint& place, const View& view,
                                              Gap gap) const {
   // Joining crossing traffic, the vehicle is not to be caught up with soon.
-  const bool joins = place.kind != StopKind::turn && gap.after == kGapToTake.after;
+  const bool joins = sets_off_from(place, gap);
   const double until_m = place.clear_s_m + vehicle_.rear_overhang_m - view.s_m +
                          (joins ? kJoining_m : 0.0);  // of the rear axle
   Crossing crossing{sample_path_profile(view.path, view.path_s_m, std::max(1.0, until_m) + 2.0,
@@ -273,7 +278,7 @@ std::optional<std::string> RightOfWay::who_comes(const StopPoint& place, const V
   }
   const Others others{crossing_now(way.profile, occupancy, view), std::move(following)};
   auto met = first_met(occupancy, others, way.ahead_m, gap);
-  if (!met && place.kind != StopKind::turn && gap.after == kGapToTake.after) {
+  if (!met && sets_off_from(place, gap)) {
     met = who_goes_first(occupancy, others, way.ahead_m, left_m(place, view),
                          place.clear_s_m - view.s_m);
   }

@@ -76,6 +76,7 @@ class RightOfWay {
   std::optional<std::string> who_may_come(const StopPoint& place, const View& view);
   static constexpr Gap kGapToTake{10, 15}, kGapOnTheWay{3, 3};
 
+  static bool sets_off_from(const StopPoint& place, Gap gap);
   struct Crossing;
   Crossing crossing_of(const StopPoint& place, const View& view, Gap gap) const;
   std::optional<std::string> who_comes(const StopPoint& place, const View& view, Gap gap);

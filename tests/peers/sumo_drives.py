@@ -40,6 +40,10 @@ import numpy as np
 import sumo
 import sumolib
 
+DATA = Path(__file__).resolve().parents[2] / "data"
+sys.path.insert(0, str(DATA))
+from road_borders import in_piece, read_roads  # noqa: E402
+
 STEP_S = 0.1
 SEEN_M = 200.0
 LENGTH_M, WIDTH_M, REAR_OVERHANG_M = 4.508, 1.610, 0.8312829  # the pilot's default vehicle
@@ -51,7 +55,6 @@ LEAST_TRIP_M = 400.0
 NOT_ADDED_WITHIN_M = 50.0  # of where the ego is
 LEVEL_M = 2.5  # roads over one another are farther apart
 ARRIVED_M = 50.0
-DATA = Path(__file__).resolve().parents[2] / "data"
 
 
 def with_limits_of_lanes(map_file, folder):
@@ -208,28 +211,10 @@ def colour_of(state):
 
 
 def place_on_road(road, s_m, forward):
-    """Position and direction of travel on the reference line of an OpenDRIVE road."""
-    part = [one for one in road.find("planView") if float(one.get("s")) <= s_m + 1e-6][-1]
-    x, y, heading, length = (float(part.get(name)) for name in ("x", "y", "hdg", "length"))
-    u = np.linspace(0.0, min(s_m - float(part.get("s")), length), 201)
-    shape = part[0]
-    if shape.tag == "paramPoly3":
-        scale = length if shape.get("pRange") == "normalized" else 1.0
-        along, across = (np.polyval([float(shape.get(k + axis)) for k in "dcba"], u / scale)
-                         for axis in "UV")
-        step = [along[-1] - along[-2], across[-1] - across[-2]] if s_m > 0.0 else [1.0, 0.0]
-        turned = math.atan2(step[1], step[0])
-    else:
-        first = float(shape.get("curvStart", shape.get("curvature", 0.0)))
-        last = float(shape.get("curvEnd", first))
-        angle = first * u + (last - first) / (2.0 * length) * u * u
-        along, across = (np.concatenate([[0.0], np.cumsum((f[1:] + f[:-1]) / 2.0 * np.diff(u))])
-                         for f in (np.cos(angle), np.sin(angle)))
-        turned = angle[-1]
-    cos, sin = math.cos(heading), math.sin(heading)
-    heading += turned + (0.0 if forward else math.pi)
-    return (x + cos * along[-1] - sin * across[-1], y + sin * along[-1] + cos * across[-1],
-            heading)
+    """Position and direction of travel on the reference line of a road."""
+    piece = [one for one in road.pieces if float(one.get("s")) <= s_m + 1e-6][-1]
+    x, y, heading = in_piece(piece, s_m - float(piece.get("s")))
+    return x, y, heading + (0.0 if forward else math.pi)
 
 
 def lights_of_lanes(map_file):
@@ -237,13 +222,13 @@ def lights_of_lanes(map_file):
     root = ElementTree.parse(map_file).getroot()
     lights = {one.get("id") for one in root.iter("signal") if one.get("dynamic") == "yes"}
     found = {}
-    for road in root.iter("road"):
-        for one in [*road.iter("signal"), *road.iter("signalReference")]:
+    for name, road in read_roads(root).items():
+        for one in [*road.node.iter("signal"), *road.node.iter("signalReference")]:
             for span in one.iter("validity") if one.get("id") in lights else ():
                 ends = sorted((int(span.get("fromLane")), int(span.get("toLane"))))
                 for lane in range(ends[0], ends[1] + 1):
                     line = place_on_road(road, float(one.get("s")), lane < 0)
-                    found.setdefault(f"{road.get('id')}_{lane}", {})[one.get("id")] = line
+                    found.setdefault(f"{name}_{lane}", {})[one.get("id")] = line
     return found
 
 
@@ -440,7 +425,8 @@ class RedLights:
 def run(options, net, map_file, density, seed, drive):
     """One drive. Returns what became of it."""
     traffic = Traffic(net, density, seed)
-    result = {"hits": 0, "touches": set(), "brakes": set(), "hard": set(), "red": 0, "time_s": None, "why": ""}
+    result = {"hits": 0, "touches": set(), "brakes": set(), "hard": set(), "red": 0,
+              "time_s": None, "why": ""}
     try:
         for _ in range(round(20.0 / STEP_S)):
             traffic.step()
@@ -574,7 +560,8 @@ class Row:
         if any(own[name] for name in ("why", "hits", "touches", "red", "brakes", "hard")):
             print(f"  {self.name} {self.density} seed {seed}: {own['hits']} hits, "
                   f"{len(own['touches'])} touches, {own['red']} red, "
-                  f"{len(own['brakes'])} brakes, {len(own['hard'])} hard; {own['why']}", file=sys.stderr, flush=True)
+                  f"{len(own['brakes'])} brakes, {len(own['hard'])} hard; {own['why']}",
+                  file=sys.stderr, flush=True)
         for driver, ratios in ((drive_by_sumo, self.ratios), (drive_alike, self.alike)):
             theirs = drive(driver)
             if driver is drive_by_sumo and theirs:
@@ -584,13 +571,16 @@ class Row:
                 ratios.append(own["time_s"] / theirs["time_s"])
 
     def is_good(self):
-        return self.hits == self.touches == self.brakes == self.red == 0 and self.done + self.jams == self.drives
+        return (self.hits == self.touches == self.brakes == self.red == 0
+                and self.done + self.jams == self.drives)
 
     def __str__(self):
         time, alike = (f"{statistics.median(ratios):6.2f}" if ratios else "     -"
                        for ratios in (self.ratios, self.alike))
-        return (f"{self.name:16} {self.density:>6} {self.drives:6} {self.done:5} {self.jams:5} {self.hours:6.2f} "
-                f"{self.hits:5} {self.touches:7} {self.brakes:6} {f'{self.hard}, {self.their_hard}':>9} {self.red:4} {time} {alike}")
+        hard = f"{self.hard}, {self.their_hard}"
+        return (f"{self.name:16} {self.density:>6} {self.drives:6} {self.done:5} {self.jams:5} "
+                f"{self.hours:6.2f} {self.hits:5} {self.touches:7} {self.brakes:6} {hard:>9} {self.red:4} "
+                f"{time} {alike}")
 
 
 def main():

@@ -24,9 +24,10 @@ planning::Obstacle car_at(const std::string& id, double x_m, double moves_at_s =
 /// The vehicle stands behind the first obstacle, with 5 m between them.
 class BehindSomebody : public testing::Test {
  protected:
-  void stand_behind(std::vector<planning::Obstacle> obstacles) {
+  void stand_behind(std::vector<planning::Obstacle> obstacles,
+                    const tests::StraightRoad& road = {}) {
     const double rear_m = obstacles.front().motion.at(0.0).x_m - 2.25;
-    world_ = std::make_unique<World>(tests::straight_world({}, std::move(obstacles)));
+    world_ = std::make_unique<World>(tests::straight_world(road, std::move(obstacles)));
     measured_.map_from_vehicle = {rear_m - 5.0 - scenario_.vehicle.front_m(), 0.0, 0.0};
     road_.emplace(scenario_.vehicle, scenario_.options, *world_);
   }
@@ -98,6 +99,11 @@ TEST_F(BehindSomebody, AQueueAtARedLightIsNoBlockedRoad) {
 TEST_F(BehindSomebody, WhoMayWaitAtASignIsGivenAMinute) {
   stand_behind({car_at("first", 60.0)});
   place(planning::StopKind::give_way, 62.25 + 2.0);
+  EXPECT_NEAR(blocked_at_s().value_or(1e9), 60.0, 0.051);
+}
+
+TEST_F(BehindSomebody, WhoMayTurnInAJunctionIsGivenAMinute) {
+  stand_behind({car_at("first", 60.0)}, {.in_junction = true});
   EXPECT_NEAR(blocked_at_s().value_or(1e9), 60.0, 0.051);
 }
 
