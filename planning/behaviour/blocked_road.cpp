@@ -13,7 +13,6 @@ namespace {
 constexpr double kHasStopped_mps = 0.3;  // of the vehicle, measured
 constexpr double kPatience_s = 10.0, kMorePatience_s = 60.0;
 constexpr double kBeforeLine_m = 15.0;  // of a queue's first
-constexpr std::size_t kJam = 3;         // who stand one behind the other
 constexpr double kBeforeLight_m = 30.0;
 
 /// Who stands next before somebody in a queue.
@@ -61,24 +60,20 @@ bool BlockedRoad::stands_at_light(const View& view, double queue_front_s_m) cons
   });
 }
 
-/// Whether the first may wait for something: at a line, or to turn in the junction that it is at.
-bool BlockedRoad::may_wait(double queue_front_s_m) const {
-  const auto is_here = [&](double from_s_m, double to_s_m) {
-    return to_s_m > queue_front_s_m - vehicle_.length_m &&
-           from_s_m < queue_front_s_m + kBeforeLine_m;
-  };
-  const auto station = [&](map::LaneId lane, double s_m) {
-    return task_.line.project(task_.road_map.lane(lane).pose_at(s_m).position()).s_m;
-  };
-  const auto is_line_here = [&](const StopPoint& place) {
-    return place.kind != StopKind::light && is_here(place.s_m, place.s_m);
-  };
-  const auto is_junction_here = [&](const RouteLeg& leg) {
-    return task_.road_map.lane(leg.lane).junction &&
-           is_here(station(leg.lane, leg.from_s_m), station(leg.lane, leg.to_s_m));
-  };
-  return std::ranges::any_of(task_.stop_points, is_line_here) ||
-         std::ranges::any_of(task_.route.legs, is_junction_here);
+/// Three or more who may drive on, not road works or parked cars.
+bool BlockedRoad::is_jam(const View& view) const {
+  constexpr std::ptrdiff_t least = 3;
+  return std::ranges::count_if(queue_, [&](std::size_t other) {
+           return !view.traffic.obstacles[other].is_static();
+         }) >= least;
+}
+
+double BlockedRoad::patience_s(const View& view, double queue_front_s_m) const {
+  const bool is_at_line = std::ranges::any_of(task_.stop_points, [&](const StopPoint& place) {
+    return place.kind != StopKind::light && place.s_m > queue_front_s_m - vehicle_.length_m &&
+           place.s_m < queue_front_s_m + kBeforeLine_m;
+  });
+  return is_at_line || is_jam(view) ? kMorePatience_s : kPatience_s;
 }
 
 std::optional<BlockedRoad::Decision> BlockedRoad::look(const View& view) {
@@ -90,10 +85,8 @@ std::optional<BlockedRoad::Decision> BlockedRoad::look(const View& view) {
     reason_.clear();
   }
   queue_ = std::move(queue);
-  if (queue_.empty() || view.t_s - since_s_ < kPatience_s) return std::nullopt;
-  const bool is_jam = queue_.size() >= kJam;
-  if (view.t_s - since_s_ < kMorePatience_s && (is_jam || may_wait(front_s_m))) return std::nullopt;
-  std::vector<std::size_t> blockers = is_jam ? std::vector<std::size_t>{} : queue_;
+  if (queue_.empty() || view.t_s - since_s_ < patience_s(view, front_s_m)) return std::nullopt;
+  std::vector<std::size_t> blockers = is_jam(view) ? std::vector<std::size_t>{} : queue_;
   if (!reason_.empty()) return Decision{reason_, false, std::nullopt, std::move(blockers)};
   DetourAnswer answer = ask(view);
   reason_ = describe(view, answer);

@@ -19,10 +19,10 @@ namespace roadbed::planning::inline behaviour {
 /// Blocked is the road when the vehicle has stood for 10 s behind somebody who stands, and of those
 /// who stand before that one, each within 15 m of the next, nobody has moved either. Whoever moves
 /// on, a light on the route that is not green up to 30 m before the first of them, and a rule that
-/// the vehicle itself waits for begin the wait anew; where the first of them may itself wait, at a
-/// sign or in a junction, and in a jam of three or more it is 60 s. Then another route is asked
-/// for, once; the obstacles that are passed over stay known (`DrivingTask::blockers`) as long as
-/// they stand.
+/// the vehicle itself waits for begin the wait anew; where the first of them may itself wait at a
+/// sign or to turn, and in a jam of three or more who may drive on, it is 60 s. Then another route
+/// is asked for, once; the obstacles that are passed over stay known (`DrivingTask::blockers`) as
+/// long as they stand.
 class BlockedRoad {
  public:
   struct View {
@@ -51,7 +51,8 @@ class BlockedRoad {
   std::vector<std::size_t> queue_ahead(const View& view, double& front_s_m) const;
   bool has_moved_on(const View& view) const;
   bool stands_at_light(const View& view, double queue_front_s_m) const;
-  bool may_wait(double queue_front_s_m) const;
+  bool is_jam(const View& view) const;
+  double patience_s(const View& view, double queue_front_s_m) const;
   DetourAnswer ask(const View& view) const;
   std::string describe(const View& view, const DetourAnswer& answer) const;
 

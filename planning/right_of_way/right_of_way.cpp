@@ -29,7 +29,6 @@ constexpr double kLeastAlong = 0.8;    // cosine of the angle up to which somebo
 constexpr double kBesideLane_m = 0.5;  // more, from who comes along it
 constexpr double kLooks_s = 3.0;       // where more is seen, before driving on
 constexpr double kGapsFrom_m = 15.0;   // beyond the way to stop on
-constexpr int kRollsOn_steps = 5;      // past a line, while who goes first comes onto the path
 
 /// How obstacles that are no lead drive now; one entry per obstacle.
 struct Others {
@@ -93,22 +92,28 @@ std::optional<Met> first_met(const StGraph& occupancy, const Others& others,
   return std::nullopt;
 }
 
-/// Who would come onto the path ahead of the vehicle when that is past the line already, where the
-/// way to cross is long: they cannot tell that it will let them go first.
+/// The line that is set off from and the end of the way across, ahead of the vehicle.
+struct WayAcross {
+  double line_m, clear_m;
+};
+
+/// Who would come onto the path when the vehicle is past the line and could no longer stop
+/// comfortably before them: they cannot tell that it will let them go first.
 std::optional<Met> who_goes_first(const StGraph& occupancy, const Others& others,
-                                  const std::vector<double>& ahead_m, double line_m,
-                                  double clear_m) {
-  const auto past_line = std::ranges::lower_bound(ahead_m, line_m);
-  const int at_line = static_cast<int>(past_line - ahead_m.begin()) + kRollsOn_steps;
-  for (int k = at_line; k < static_cast<int>(ahead_m.size()); ++k) {
+                                  const std::vector<double>& ahead_m, WayAcross across,
+                                  double comfort_deceleration_mps2) {
+  for (std::size_t i = 1; i < ahead_m.size(); ++i) {
+    if (ahead_m[i] < across.line_m) continue;
+    const int k = static_cast<int>(i);
+    const double speed_mps = (ahead_m[i] - ahead_m[i - 1]) / StGraph::kStep_s;
+    const double stops_at_m = ahead_m[i] + 0.5 * speed_mps * speed_mps / comfort_deceleration_mps2;
     for (const StInterval& part : occupancy.at(k)) {
-      const bool is_ahead =
-          part.from_m > ahead_m[static_cast<std::size_t>(k)] && part.from_m < clear_m;
-      if (!is_ahead || others.following[part.obstacle]) continue;
-      if (is_lead(occupancy, others, part.obstacle)) continue;
-      if (!is_on_path(occupancy, at_line, part.obstacle)) {
-        return Met{part.obstacle, StGraph::kStep_s * k};
-      }
+      const bool is_ahead = part.from_m > ahead_m[i] && part.from_m < across.clear_m;
+      const bool is_let_first = is_ahead && part.from_m < stops_at_m;
+      if (!is_let_first || is_on_path(occupancy, k - 1, part.obstacle)) continue;
+      const bool keeps_away =
+          others.following[part.obstacle] || is_lead(occupancy, others, part.obstacle);
+      if (!keeps_away) return Met{part.obstacle, StGraph::kStep_s * k};
     }
   }
   return std::nullopt;
@@ -279,8 +284,9 @@ std::optional<std::string> RightOfWay::who_comes(const StopPoint& place, const V
   const Others others{crossing_now(way.profile, occupancy, view), std::move(following)};
   auto met = first_met(occupancy, others, way.ahead_m, gap);
   if (!met && sets_off_from(place, gap)) {
-    met = who_goes_first(occupancy, others, way.ahead_m, left_m(place, view),
-                         place.clear_s_m - view.s_m);
+    met = who_goes_first(occupancy, others, way.ahead_m,
+                         {left_m(place, view), place.clear_s_m - view.s_m},
+                         comfort_deceleration_mps2_);
   }
   if (met) {
     const Obstacle& obstacle = view.traffic.obstacles[met->obstacle];

@@ -13,10 +13,8 @@ tools::World straight_world(const StraightRoad& road, std::vector<planning::Obst
   MadeMap made;
   made.parts.format = "made";
   const double y_m = 0.5 * road.width_m, from_m = road.from_x_m, to_m = road.to_x_m;
-  const map::RoadId id =
-      road.in_junction ? made.add_road("1", made.add_junction("1")) : made.add_road("1");
-  const map::LaneId lane =
-      made.add_lane(id, "-1", {{from_m, y_m}, {to_m, y_m}}, {{from_m, -y_m}, {to_m, -y_m}});
+  const map::LaneId lane = made.add_lane(made.add_road("1"), "-1", {{from_m, y_m}, {to_m, y_m}},
+                                         {{from_m, -y_m}, {to_m, -y_m}});
   auto kept_map = std::make_shared<const map::RoadMap>(made.build());
   const map::RoadMap& road_map = *kept_map;
   planning::Route route = *planning::find_route(road_map, {lane, road.start_x_m - from_m},

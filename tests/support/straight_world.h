@@ -11,7 +11,6 @@ struct StraightRoad {
   double from_x_m = 0.0, to_x_m = 260.0;
   double width_m = 4.0;
   double start_x_m = 10.0, goal_x_m = 200.0;
-  bool in_junction = false;
 };
 
 /// The road with a route from start to goal, its reference line and obstacles.

@@ -24,10 +24,9 @@ planning::Obstacle car_at(const std::string& id, double x_m, double moves_at_s =
 /// The vehicle stands behind the first obstacle, with 5 m between them.
 class BehindSomebody : public testing::Test {
  protected:
-  void stand_behind(std::vector<planning::Obstacle> obstacles,
-                    const tests::StraightRoad& road = {}) {
+  void stand_behind(std::vector<planning::Obstacle> obstacles) {
     const double rear_m = obstacles.front().motion.at(0.0).x_m - 2.25;
-    world_ = std::make_unique<World>(tests::straight_world(road, std::move(obstacles)));
+    world_ = std::make_unique<World>(tests::straight_world({}, std::move(obstacles)));
     measured_.map_from_vehicle = {rear_m - 5.0 - scenario_.vehicle.front_m(), 0.0, 0.0};
     road_.emplace(scenario_.vehicle, scenario_.options, *world_);
   }
@@ -102,11 +101,6 @@ TEST_F(BehindSomebody, WhoMayWaitAtASignIsGivenAMinute) {
   EXPECT_NEAR(blocked_at_s().value_or(1e9), 60.0, 0.051);
 }
 
-TEST_F(BehindSomebody, WhoMayTurnInAJunctionIsGivenAMinute) {
-  stand_behind({car_at("first", 60.0)}, {.in_junction = true});
-  EXPECT_NEAR(blocked_at_s().value_or(1e9), 60.0, 0.051);
-}
-
 TEST_F(BehindSomebody, AJamIsGivenAMinuteAndNotPassedLikeParkedCars) {
   stand_behind({car_at("first", 60.0), car_at("second", 70.0)});
   ASSERT_NEAR(blocked_at_s().value_or(1e9), 10.0, 0.051);
@@ -114,6 +108,16 @@ TEST_F(BehindSomebody, AJamIsGivenAMinuteAndNotPassedLikeParkedCars) {
   stand_behind({car_at("first", 60.0), car_at("second", 70.0), car_at("third", 85.0)});
   EXPECT_NEAR(blocked_at_s().value_or(1e9), 60.0, 0.051);
   EXPECT_THAT(look(70.0)->blockers, testing::IsEmpty());
+}
+
+TEST_F(BehindSomebody, BarriersOneBehindTheOtherAreNoJam) {
+  std::vector<planning::Obstacle> works;
+  for (const double x_m : {60.0, 70.0, 80.0}) {
+    works.push_back({.id = "works", .motion = drive_through({{0.0, {x_m, 0.0, 0.0}}})});
+  }
+  stand_behind(works);
+  EXPECT_NEAR(blocked_at_s().value_or(1e9), 10.0, 0.051);
+  EXPECT_EQ(look(20.0)->blockers.size(), 3U);
 }
 
 TEST_F(BehindSomebody, NothingIsBlockedWhereARuleIsWaitedForOrTheVehicleMoves) {

@@ -175,14 +175,23 @@ TEST_F(WaitingAtAPlace, GapIsTakenOnlyIfNobodyComesWithinIt) {
 
 // At 8 to 10 m/s the vehicle is past its line in 2.5 s, and after 35 m more in the way of those who
 // cross, in 5.7 s. Who crosses at 4 s has passed by then, but cannot know that the vehicle lets
-// him.
-TEST_F(WaitingAtAPlace, NobodyIsLetFirstFromPastTheLine) {
-  for (const auto& [at_s, must_wait] : {std::pair{2.4, false}, {4.0, true}}) {
+// him; at 2.4 s it is before its line, and from rest at the line it could stop within some metres.
+TEST_F(WaitingAtAPlace, NobodyIsLetFirstFromPastTheLineByWhoCouldNotStop) {
+  struct Case {
+    double left_m, speed_mps, crosses_at_s;
+    bool must_wait;
+  };
+  for (const Case& one : {Case{22.0, 8.0, 2.4, false},
+                          {22.0, 8.0, 4.0, true},
+                          {0.5, 0.0, 2.4, false},
+                          {0.5, 0.0, 4.0, false}}) {
     world_.stop_points = {
         {.kind = planning::StopKind::give_way, .s_m = 30.0, .clear_s_m = 70.0, .name = "place 1"}};
-    world_.obstacles = {crossing_at(at_s)};
+    world_.obstacles = {crossing_at(one.crosses_at_s)};
     planning::RightOfWay rules(scenario_.vehicle, scenario_.options, world_);
-    EXPECT_EQ(look(rules, 0.0, kPlace_m - 30.0 + 22.0, 8.0).has_value(), must_wait) << at_s;
+    EXPECT_EQ(look(rules, 0.0, kPlace_m - 30.0 + one.left_m, one.speed_mps).has_value(),
+              one.must_wait)
+        << one.speed_mps << " m/s, " << one.crosses_at_s << " s";
   }
 }
 
