@@ -53,24 +53,19 @@ std::vector<bool> crossing_now(const PathProfile& profile, const StGraph& occupa
   return crossing;
 }
 
-bool is_on_path(const StGraph& occupancy, int step, std::size_t obstacle) {
-  return std::ranges::any_of(occupancy.at(step),
-                             [&](const StInterval& part) { return part.obstacle == obstacle; });
-}
-
-/// Who is on the path already, and drives along it.
-bool is_lead(const StGraph& occupancy, const Others& others, std::size_t obstacle) {
-  return !others.crossing[obstacle] && is_on_path(occupancy, 0, obstacle);
-}
-
 /// Whether an obstacle that is not the lead blocks a place at one of the steps `from` to `to`.
 std::optional<std::size_t> who_blocks(const StGraph& occupancy, const Others& others, int from,
                                       int to, double ahead_m) {
+  const auto is_lead = [&](std::size_t obstacle) {
+    return !others.crossing[obstacle] &&
+           std::ranges::any_of(occupancy.at(0),
+                               [&](const StInterval& part) { return part.obstacle == obstacle; });
+  };
   for (int k = std::max(0, from); k <= to; ++k) {
     for (const StInterval& part : occupancy.at(k)) {
       const bool is_behind = part.from_m < 0.0 || others.following[part.obstacle];
       if (is_behind || ahead_m <= part.from_m || ahead_m >= part.to_m) continue;
-      if (!is_lead(occupancy, others, part.obstacle)) return part.obstacle;
+      if (!is_lead(part.obstacle)) return part.obstacle;
     }
   }
   return std::nullopt;
@@ -92,38 +87,12 @@ std::optional<Met> first_met(const StGraph& occupancy, const Others& others,
   return std::nullopt;
 }
 
-/// The line that is set off from and the end of the way across, ahead of the vehicle.
-struct WayAcross {
-  double line_m, clear_m;
-};
-
-/// Who would come onto the path when the vehicle is past the line and could no longer stop
-/// comfortably before them: they cannot tell that it will let them go first.
-std::optional<Met> who_goes_first(const StGraph& occupancy, const Others& others,
-                                  const std::vector<double>& ahead_m, WayAcross across,
-                                  double comfort_deceleration_mps2) {
-  for (std::size_t i = 1; i < ahead_m.size(); ++i) {
-    if (ahead_m[i] < across.line_m) continue;
-    const int k = static_cast<int>(i);
-    const double speed_mps = (ahead_m[i] - ahead_m[i - 1]) / StGraph::kStep_s;
-    const double stops_at_m = ahead_m[i] + 0.5 * speed_mps * speed_mps / comfort_deceleration_mps2;
-    for (const StInterval& part : occupancy.at(k)) {
-      const bool is_ahead = part.from_m > ahead_m[i] && part.from_m < across.clear_m;
-      const bool is_let_first = is_ahead && part.from_m < stops_at_m;
-      if (!is_let_first || is_on_path(occupancy, k - 1, part.obstacle)) continue;
-      const bool keeps_away =
-          others.following[part.obstacle] || is_lead(occupancy, others, part.obstacle);
-      if (!keeps_away) return Met{part.obstacle, StGraph::kStep_s * k};
-    }
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 RightOfWay::RightOfWay(const geometry::VehicleShape& vehicle, const DrivingOptions& options,
                        const DrivingTask& task)
     : vehicle_(vehicle),
+      comfort_acceleration_mps2_(options.comfort_acceleration_mps2),
       comfort_deceleration_mps2_(options.comfort_deceleration_mps2),
       task_(task),
       hidden_(task) {}
@@ -241,30 +210,29 @@ std::optional<std::string> RightOfWay::why_wait(const StopPoint& place, const Vi
   return who_may_come(place, view);
 }
 
-/// Whether a gap is looked for from a sign or a join's line, behind which the vehicle still is.
-bool RightOfWay::sets_off_from(const StopPoint& place, Gap gap) {
-  return place.kind != StopKind::turn && gap.after == kGapToTake.after;
-}
-
 /// The way across, and when the vehicle is where on it.
 struct RightOfWay::Crossing {
   PathProfile profile;
-  std::vector<double> ahead_m;  ///< per step
+  std::vector<double> ahead_m;  ///< per step, speeding up slowly
+  std::vector<double> most_m;   ///< as the style allows
   int steps_of_others;
 };
 
 RightOfWay::Crossing RightOfWay::crossing_of(const StopPoint& place, const View& view,
                                              Gap gap) const {
   // Joining crossing traffic, the vehicle is not to be caught up with soon.
-  const bool joins = sets_off_from(place, gap);
+  const bool joins = place.kind != StopKind::turn && gap.after == kGapToTake.after;
   const double until_m = place.clear_s_m + vehicle_.rear_overhang_m - view.s_m +
                          (joins ? kJoining_m : 0.0);  // of the rear axle
   Crossing crossing{sample_path_profile(view.path, view.path_s_m, std::max(1.0, until_m) + 2.0,
                                         view.ceiling, vehicle_),
                     {},
+                    {},
                     0};
   crossing.ahead_m = drive_on(crossing.profile, view.speed_mps, until_m);
-  crossing.steps_of_others = static_cast<int>(crossing.ahead_m.size()) + gap.after;
+  crossing.most_m = drive_on(crossing.profile, view.speed_mps, until_m, comfort_acceleration_mps2_);
+  crossing.steps_of_others =
+      static_cast<int>(std::max(crossing.ahead_m.size(), crossing.most_m.size())) + gap.after;
   return crossing;
 }
 
@@ -283,11 +251,7 @@ std::optional<std::string> RightOfWay::who_comes(const StopPoint& place, const V
   }
   const Others others{crossing_now(way.profile, occupancy, view), std::move(following)};
   auto met = first_met(occupancy, others, way.ahead_m, gap);
-  if (!met && sets_off_from(place, gap)) {
-    met = who_goes_first(occupancy, others, way.ahead_m,
-                         {left_m(place, view), place.clear_s_m - view.s_m},
-                         comfort_deceleration_mps2_);
-  }
+  if (!met) met = first_met(occupancy, others, way.most_m, gap);
   if (met) {
     const Obstacle& obstacle = view.traffic.obstacles[met->obstacle];
     return fmt::format("{}: {} {} would be met in {:.1f} s", place.name, obstacle.kind, obstacle.id,

@@ -22,12 +22,12 @@ struct StopConstraint {
 /// Looks at the waiting places of a world, one after the other: lights, signs, and gaps in the
 /// traffic that has the right of way.
 ///
-/// A gap is good if the vehicle, driving on from here at a comfortable acceleration, leaves what it
-/// crosses 1 s after the vehicle before it and 1.5 s before the next one. Who drives along on the
-/// path already is the cruise control's lead, and not looked at here. Somebody may come from where
-/// nothing is seen (hidden_traffic.h): for that one the vehicle stops as late as it may, where more
-/// is seen, and creeps on when for 3 s nobody has come, until it is seen that nobody does, or until
-/// it is in the way.
+/// A gap is good if the vehicle, driving on from here, comes to what it crosses 1 s after the
+/// vehicle before it and leaves 1.5 s before the next one, whether it speeds up by 1 m/s² or as its
+/// style does. Who drives along on the path already is the cruise control's lead, and not looked at
+/// here. Somebody may come from where nothing is seen (hidden_traffic.h): for that one the vehicle
+/// stops as late as it may, where more is seen, and creeps on when for 3 s nobody has come, until
+/// it is seen that nobody does, or until it is in the way.
 class RightOfWay {
  public:
   /// Time that has to be between two who cross, before and after the vehicle; in steps of 0.1 s.
@@ -76,7 +76,6 @@ class RightOfWay {
   std::optional<std::string> who_may_come(const StopPoint& place, const View& view);
   static constexpr Gap kGapToTake{10, 15}, kGapOnTheWay{3, 3};
 
-  static bool sets_off_from(const StopPoint& place, Gap gap);
   struct Crossing;
   Crossing crossing_of(const StopPoint& place, const View& view, Gap gap) const;
   std::optional<std::string> who_comes(const StopPoint& place, const View& view, Gap gap);
@@ -89,7 +88,7 @@ class RightOfWay {
   std::optional<double> stops_before_red_mps2(const StopPoint& place, const View& view) const;
 
   const geometry::VehicleShape& vehicle_;
-  double comfort_deceleration_mps2_;
+  double comfort_acceleration_mps2_, comfort_deceleration_mps2_;
   const DrivingTask& task_;
   std::size_t places_ = 0;    ///< how many there were at the last look
   std::size_t next_ = 0;      ///< the first place that is not passed

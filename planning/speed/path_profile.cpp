@@ -78,13 +78,14 @@ void limit_speed_in_bends(PathProfile& profile, const geometry::VehicleShape& ve
   }
 }
 
-std::vector<double> drive_on(const PathProfile& profile, double speed_mps, double until_m) {
-  constexpr double kSpeedsUp_mps2 = 1.0, kStep_s = 0.1;
+std::vector<double> drive_on(const PathProfile& profile, double speed_mps, double until_m,
+                             double speeds_up_mps2) {
+  constexpr double kStep_s = 0.1;
   constexpr std::size_t kMostSteps = 150;
   std::vector<double> ahead{0.0};
   while (ahead.back() < until_m && ahead.size() < kMostSteps) {
     const double most = std::max(1.0, profile.wanted_mps[profile.before(ahead.back())]);
-    speed_mps = std::min(speed_mps + kSpeedsUp_mps2 * kStep_s, most);
+    speed_mps = std::min(speed_mps + speeds_up_mps2 * kStep_s, most);
     ahead.push_back(ahead.back() + kStep_s * speed_mps);
   }
   return ahead;

@@ -45,9 +45,10 @@ PathProfile sample_path_profile(const PlannedPath& path, double from_s_m, double
 void limit_speed_in_bends(PathProfile& profile, const geometry::VehicleShape& vehicle,
                           const BendLimits& limits);
 
-/// Distances after 0, 0.1, 0.2 … s of driving on freely: as the cruise control speeds up, to what
-/// the line's ceiling wants, until `until_m` is passed; for 15 s at most.
-std::vector<double> drive_on(const PathProfile& profile, double speed_mps, double until_m);
+/// Distances after 0, 0.1, 0.2 … s of driving on freely to what the line's ceiling wants, until
+/// `until_m` is passed; for 15 s at most. As the cruise control speeds up over most of it: 1 m/s².
+std::vector<double> drive_on(const PathProfile& profile, double speed_mps, double until_m,
+                             double speeds_up_mps2 = 1.0);
 
 /// How far along the path every corner of the body stays on the road surface [m]: up to the sample
 /// before the first that does not, and infinite if there is none. Where the path begins off the
