@@ -2,6 +2,7 @@
 
 #include <CGAL/Arr_curve_data_traits_2.h>
 #include <CGAL/Arr_extended_dcel.h>
+#include <CGAL/Arr_observer.h>
 #include <CGAL/Arr_segment_traits_2.h>
 #include <CGAL/Arrangement_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
@@ -9,7 +10,9 @@
 #include <CGAL/Polygon_2_algorithms.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -78,6 +81,33 @@ std::vector<Edge> summed(std::vector<Edge> edges) {
   std::erase_if(sums, [](const Edge& edge) { return edge.change == 0; });
   return sums;
 }
+
+constexpr int kLastEdge = std::numeric_limits<int>::max();  // in place of a change
+
+/// An edge beyond all others, which a sweep comes to last.
+Edge last_edge(const std::vector<Edge>& edges) {
+  double most_x_m = 0.0;
+  for (const Edge& edge : edges) most_x_m = std::max(most_x_m, edge.right.x());
+  const double x_m = std::nextafter(most_x_m, std::numeric_limits<double>::max());
+  return {{x_m, 0.0}, {x_m, 1.0}, kLastEdge};
+}
+
+/// Where a sweep joins components, halfedges of the older one come to the newer one by one link
+/// more. At its end CGAL walks these links from each halfedge, the oldest first, in a time that is
+/// quadratic in the steps of a border; the newest first, no walk has more than two, as each
+/// shortens the next. (An observer of Arrangement_2 would be cast to one of its base, which it is
+/// not, and compilers leave its calls out.)
+class LinkShortener : public CGAL::Arr_observer<Arrangement::Base> {
+ public:
+  using CGAL::Arr_observer<Arrangement::Base>::Arr_observer;
+
+  void after_create_edge(Halfedge edge) override {
+    if (edge->curve().data() != kLastEdge) return;
+    for (auto it = arrangement()->halfedges_end(); it != arrangement()->halfedges_begin();) {
+      (--it)->face();
+    }
+  }
+};
 
 /// By how much the winding number grows from the right of a halfedge to its left.
 int winding_change(Halfedge halfedge) {
@@ -173,12 +203,15 @@ bool has_simple_edges(const Ring& ring) {
 }
 
 std::vector<Boundaries> wound_region(const std::vector<Ring>& rings) {
+  std::vector<Edge> swept = summed(edges_of(rings));
+  swept.push_back(last_edge(swept));
   std::vector<Traits::X_monotone_curve_2> edges;
-  for (const Edge& edge : summed(edges_of(rings))) {
+  for (const Edge& edge : swept) {
     edges.emplace_back(SegmentTraits::X_monotone_curve_2(to_exact(edge.left), to_exact(edge.right)),
                        edge.change);
   }
   Arrangement arrangement;
+  const LinkShortener shortener(arrangement);
   CGAL::insert(arrangement, edges.begin(), edges.end());
   number_windings(arrangement);
   std::vector<Boundaries> parts(static_cast<std::size_t>(number_parts(arrangement)));

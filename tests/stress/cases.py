@@ -118,6 +118,13 @@ MOVERS: Commands = [
     ),
     ("audit --check", ["audit", "--check", "out.json"]),
 ]
+AREAS: Commands = [
+    (
+        "audit --on area",
+        ["audit", "--on", "area:IN", "--trajectory", "in.csv", "--certificate", "out.json", "--force"],
+    ),
+    ("audit --check", ["audit", "--check", "out.json"]),
+]
 CLOUD: Commands = [
     ("occupancy info", ["occupancy", "info", "IN"]),
     ("occupancy build", ["occupancy", "build", "IN", "-o", "out.bt", "--force"]),
@@ -183,6 +190,12 @@ CASES = [
         500,
         map_commands("50,-1.7", ".xodr", "anchored .osm", ".geojson") + EDIT,
     ),
+    Case("elevations of a road", inputs.elevations_of_a_road, 400, ALL + EDIT),
+    Case("tilts of a road", inputs.tilts_of_a_road, 400, ALL + EDIT),
+    Case("offsets of lanes", inputs.offsets_of_lanes, 400, ALL + EDIT),
+    Case("borders of a lane", inputs.borders_of_a_lane, 400, ALL + EDIT),
+    Case("heights of a lane", inputs.heights_of_a_lane, 400, ALL + EDIT),
+    Case("arms of a junction", inputs.arms_of_a_junction, 10, ALL + EDIT),
     Case("strips of a road", inputs.strips_of_a_road, 100, map_commands("50,-1.7") + EDIT),
     Case("signals of a road", inputs.signals_of_a_road, 100, map_commands("50,-1.7") + EDIT),
     Case("signals of all lanes", inputs.signals_of_all_lanes, 50, ALL + EDIT),
@@ -233,6 +246,7 @@ CASES = [
     Case("long intersections", inputs.av_long_intersections, 10, map_commands("50,1.5")[:3]),
     Case("objects in a list", inputs.objects_in_a_list, 3000, SCENARIO),
     Case("empty objects", inputs.empty_objects, 50000, SCENARIO),
+    Case("traffic of a scenario", inputs.traffic_of_a_scenario, 5, SCENARIO),
     Case("keys of an object", inputs.keys_of_an_object, 10000, SCENARIO),
     Case("nested objects", inputs.nested_objects, 10000, SCENARIO),
     Case("numbers in a list", inputs.numbers_in_a_list, 100_000, CHECK),
@@ -240,6 +254,7 @@ CASES = [
     Case("rows apart", inputs.rows_apart, 100, AUDIT),
     Case("outlier", inputs.outlier, 20_000, AUDIT),
     Case("movers", inputs.movers, 1000, MOVERS),
+    Case("areas of a drive", inputs.areas_of_a_drive, 20, AREAS),
     Case("points .xyz", inputs.xyz, 10000, CLOUD),
     Case("points .pcd", inputs.pcd_binary, 10000, CLOUD),
     Case("points in one place", inputs.pcd_one_place, 100_000, CLOUD + OBJECTS),

@@ -196,6 +196,72 @@ def strips_of_a_road(folder: Path, n: int) -> Path:
     return open_drive(folder, road(1, length=n, sections=sections, extra=surface))
 
 
+def profile_of_a_road(folder: Path, n: int, begin: str, end: str, record: str) -> Path:
+    """A road of 100 m whose records of one kind go up and down n times."""
+    records = "".join(
+        f'<{record} s="{100 * i / n:g}" a="{0.05 * (i % 2):g}" b="{0.001 * (-1) ** i:g}" c="0" d="0"/>'
+        for i in range(n)
+    )
+    return open_drive(folder, road(1, extra=begin + records + end))
+
+
+def elevations_of_a_road(folder: Path, n: int) -> Path:
+    return profile_of_a_road(folder, n, "<elevationProfile>", "</elevationProfile>", "elevation")
+
+
+def tilts_of_a_road(folder: Path, n: int) -> Path:
+    return profile_of_a_road(folder, n, "<lateralProfile>", "</lateralProfile>", "superelevation")
+
+
+def offsets_of_lanes(folder: Path, n: int) -> Path:
+    offsets = "".join(
+        f'<laneOffset s="{100 * i / n:g}" a="{0.05 * (i % 2):g}" b="0" c="0" d="0"/>'
+        for i in range(n)
+    )
+    return open_drive(folder, road(1, sections=offsets + lanes_section()))
+
+
+def borders_of_a_lane(folder: Path, n: int) -> Path:
+    borders = "".join(
+        f'<border sOffset="{100 * i / n:g}" a="{-3.5 - 0.05 * (i % 2):g}" b="0" c="0" d="0"/>'
+        for i in range(n)
+    )
+    return open_drive(
+        folder, road(1, sections=lanes_section(f'<lane id="-1" type="driving">{borders}</lane>'))
+    )
+
+
+def heights_of_a_lane(folder: Path, n: int) -> Path:
+    heights = "".join(
+        f'<height sOffset="{100 * i / n:g}" inner="{0.1 * (i % 2):g}" outer="0.1"/>'
+        for i in range(n)
+    )
+    return open_drive(
+        folder, road(1, sections=lanes_section(LANE.replace("</lane>", heights + "</lane>")))
+    )
+
+
+def arms_of_a_junction(folder: Path, n: int) -> Path:
+    """Around a place as wide as they need; each leads to the next one."""
+    radius = 10.0 * n
+    arms, across, connections = [], [], []
+    for i in range(n):
+        turn, after = 2 * math.pi * i / n, 2 * math.pi * (i + 1) / n
+        x, y = radius * math.cos(turn), radius * math.sin(turn)
+        away = math.atan2(math.sin(after) - math.sin(turn), math.cos(after) - math.cos(turn))
+        chord = 2 * radius * math.sin(math.pi / n)
+        into = '<link><predecessor elementType="junction" elementId="9"/></link>'
+        arms.append(road(f"a{i}", x, y, heading=turn, link=into))
+        link = f'<link><predecessor elementType="road" elementId="a{i}" contactPoint="start"/></link>'
+        across.append(road(f"c{i}", x, y, chord, away, junction="9", link=link))
+        connections.append(
+            f'<connection id="{i}" incomingRoad="a{i}" connectingRoad="c{i}" contactPoint="start">'
+            '<laneLink from="-1" to="-1"/></connection>'
+        )
+    junction = f'<junction id="9" name="j">{"".join(connections)}</junction>'
+    return open_drive(folder, "".join(arms + across) + junction)
+
+
 def signals_of_a_road(folder: Path, n: int) -> Path:
     signals = "".join(
         f'<signal id="{i}" s="{100 * i / n:g}" t="-5" type="1000001" subtype="-1" dynamic="yes" '
@@ -636,6 +702,20 @@ def empty_objects(folder: Path, n: int) -> Path:
     return scenario(folder, f'{{"roadbed_scenario":1,"obstacles":[{",".join(["{}"] * n)}]}}')
 
 
+def traffic_of_a_scenario(folder: Path, n: int) -> Path:
+    """Cars in a row ahead of the vehicle on a road as long as they need."""
+    open_drive(folder, road(1, length=400 + 12 * n))
+    cars = ",".join(
+        f'{{"id":"a{i}","traffic":{{"start":"lane:1/0/-1@{100 + 12 * i}","speed_mps":10}}}}'
+        for i in range(n)
+    )
+    head = (
+        '"roadbed_scenario":1,"name":"a row","map":"in.xodr","duration_s":5,'
+        '"ego":{"start":"lane:1/0/-1@50","speed_mps":10},"goal":"lane:1/0/-1@350"'
+    )
+    return scenario(folder, f'{{{head},"obstacles":[{cars}]}}')
+
+
 def keys_of_an_object(folder: Path, n: int) -> Path:
     return scenario(folder, "{" + ",".join(f'"k{i}":1' for i in range(n)) + "}")
 
@@ -669,6 +749,13 @@ def outlier(folder: Path, n: int) -> Path:
     rows = [(i * 1e5, 150 + i, 198.2, 0) for i in range(9)]
     rows[4] = (4e5, 150 + n, 198.2 + n, 0)
     return drive(folder, rows)
+
+
+def areas_of_a_drive(folder: Path, n: int) -> Path:
+    """Polygons that overlap, along the drive."""
+    drive(folder, ((i, 5 + 0.5 * (n - 10) * i / 20, 5, 0) for i in range(21)))
+    features = (polygon([square(0.5 * i, 0.003 * i)]) for i in range(n))
+    return geojson(folder, features)
 
 
 def movers(folder: Path, n: int) -> Path:
