@@ -752,10 +752,11 @@ def outlier(folder: Path, n: int) -> Path:
 
 
 def areas_of_a_drive(folder: Path, n: int) -> Path:
-    """Polygons that overlap, along the drive."""
-    drive(folder, ((i, 5 + 0.5 * (n - 10) * i / 20, 5, 0) for i in range(21)))
-    features = (polygon([square(0.5 * i, 0.003 * i)]) for i in range(n))
-    return geojson(folder, features)
+    """Polygons of which each overlaps most others, around the drive."""
+    drive(folder, ((i, 5 + i, 5, 0) for i in range(21)))
+    chance = random.Random(1)
+    corners = ((chance.uniform(-30, 30), chance.uniform(-30, 30)) for _ in range(n))
+    return geojson(folder, (polygon([square(x, y, 30)]) for x, y in corners))
 
 
 def movers(folder: Path, n: int) -> Path:

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <random>
 #include <utility>
 
 #include "roadbed/planning/audit/check/body_outline.h"
@@ -110,6 +111,20 @@ std::vector<Interval> parts_in(const Segment& segment, const Polygon& polygon) {
   return parts;
 }
 
+/// What a part leaves of intervals, but for what is no longer than `least`.
+std::vector<Interval> without(const std::vector<Interval>& intervals, const Interval& part,
+                              double least) {
+  std::vector<Interval> left;
+  for (const Interval& one : intervals) {
+    const Interval before{one.from, std::min(one.to, part.from)};
+    const Interval after{std::max(one.from, part.to), one.to};
+    for (const Interval& rest : {before, after}) {
+      if (rest.to - rest.from > least) left.push_back(rest);
+    }
+  }
+  return left;
+}
+
 double to_point_m(const BodyOutline::Place& place, const Vector2d& point) {
   if (place.radius_m > 0.0)
     return std::max(0.0, (point - place.corners[0]).norm() - place.radius_m);
@@ -136,6 +151,8 @@ class SurfaceCheck {
         drive_(drive),
         outline_(certificate.part, 0.0) {
     for (const Polygon& polygon : polygons) pieces_.push_back(piece_of(polygon));
+    // An edge that many polygons cover together is covered by few of them in an order by chance.
+    std::ranges::shuffle(pieces_, std::mt19937(1));
   }
 
   std::vector<std::string> faults() {
@@ -224,7 +241,9 @@ class SurfaceCheck {
       std::optional<Vector2d> open;
       visit_edges(*polygon, [&](const Vector2d& from, const Vector2d& to) {
         if (open) return;
-        if (part_within({from, to}, grown)) open = open_place({from, to}, near, place, needed_m);
+        if (const auto part = near_part({from, to}, grown)) {
+          open = open_place(*part, near, place, needed_m);
+        }
       });
       if (open) return open;
     }
@@ -257,6 +276,18 @@ class SurfaceCheck {
     return grown;
   }
 
+  /// The part of an edge within the grown rectangle, and of what follows on it as much as an open
+  /// place has to be long.
+  std::optional<Segment> near_part(const Segment& edge,
+                                   const std::array<Vector2d, 4>& grown) const {
+    const std::optional<Interval> part = part_within(edge, grown);
+    if (!part) return std::nullopt;
+    const Vector2d along = edge.to - edge.from;
+    const double more = 4.0 * beside_m_ / along.norm();
+    return Segment{edge.from + std::max(0.0, part->from - more) * along,
+                   edge.from + std::min(1.0, part->to + more) * along};
+  }
+
   /// A place of the edge, within the distance of the body, beside which one side is open.
   std::optional<Vector2d> open_place(const Segment& edge, const std::vector<const Polygon*>& near,
                                      const BodyOutline::Place& place, double needed_m) const {
@@ -286,20 +317,15 @@ class SurfaceCheck {
       }
       return {{0.0, 1.0}};
     }
-    std::vector<Interval> covered, open;
+    const double corner = 2.0 * beside_m_ / length_m;
+    std::vector<Interval> open{{0.0, 1.0}};
     for (const Polygon* polygon : near) {
       for (const Vector2d& by : shifts) {
         for (const Interval& part : parts_in({edge.from + by, edge.to + by}, *polygon)) {
-          covered.push_back(part);
+          open = without(open, part, corner);
         }
+        if (open.empty()) return open;
       }
-    }
-    std::ranges::sort(covered, {}, &Interval::from);
-    covered.push_back({1.0, 1.0});
-    double until = 0.0;
-    for (const Interval& part : covered) {
-      if ((part.from - until) * length_m > 2.0 * beside_m_) open.push_back({until, part.from});
-      until = std::max(until, part.to);
     }
     return open;
   }
