@@ -54,8 +54,9 @@ class LaneletClipper {
     }
     if (strips_.empty()) {
       result.reason = "no lanelet of the map reaches into the region";
-      result.count("lines left out with it",
-                   std::ranges::count_if(spans_, [](const auto& spans) { return !spans.empty(); }));
+      const auto left_out =
+          std::ranges::count_if(spans_, [](const auto& spans) { return !spans.empty(); });
+      result.count("lines left out with it", static_cast<std::size_t>(left_out));
       return;
     }
     keep_other_relations();
