@@ -11,6 +11,16 @@ namespace {
 constexpr int kSubsteps = 4;
 constexpr double kTurnsFor_s = 2.0;  // nobody turns for ever
 constexpr double kSpeedsUpFor_s = 1.0, kBrakesFor_s = 2.0;
+constexpr double kKeepsSpeedingUpFor_s = 4.0, kSpeedsUp_mps2 = 0.5;
+
+/// Time for a way, speeding up from a speed for a while.
+double time_for_s(double way_m, double speed_mps, double acceleration_mps2, double for_s) {
+  const double faster_mps = speed_mps + acceleration_mps2 * for_s;
+  const double until_m = 0.5 * (speed_mps + faster_mps) * for_s;
+  if (way_m > until_m) return for_s + (way_m - until_m) / faster_mps;
+  const double then_mps = std::sqrt(speed_mps * speed_mps + 2.0 * acceleration_mps2 * way_m);
+  return (then_mps - speed_mps) / acceleration_mps2;
+}
 
 }  // namespace
 
@@ -40,6 +50,28 @@ geometry::Trajectory foreseen_motion(const SeenMotion& seen) {
     const double heading = pose.heading_rad + 0.5 * turn;
     pose = {pose.x_m + way_m * std::cos(heading), pose.y_m + way_m * std::sin(heading),
             pose.heading_rad + turn};
+  }
+  return geometry::Trajectory(std::move(points));
+}
+
+std::optional<geometry::Trajectory> speeding_on(const geometry::Trajectory& foreseen,
+                                                double from_s) {
+  constexpr double over_s = 0.5;
+  const geometry::TrajectoryPoint now = foreseen.at(from_s);
+  const double acceleration_mps2 =
+      (foreseen.at(from_s + over_s).speed_mps - now.speed_mps) / over_s;
+  if (now.speed_mps < 0.0 || acceleration_mps2 < kSpeedsUp_mps2) return std::nullopt;
+  std::vector<geometry::TrajectoryPoint> points{now};
+  double way_m = 0.0;
+  Eigen::Vector2d last = now.pose().position();
+  for (geometry::TrajectoryPoint point : foreseen.points()) {
+    if (point.t_s <= from_s) continue;
+    way_m += (point.pose().position() - std::exchange(last, point.pose().position())).norm();
+    const double after_s =
+        time_for_s(way_m, now.speed_mps, acceleration_mps2, kKeepsSpeedingUpFor_s);
+    point.t_s = from_s + after_s;
+    point.speed_mps = now.speed_mps + acceleration_mps2 * std::min(after_s, kKeepsSpeedingUpFor_s);
+    if (point.t_s > points.back().t_s) points.push_back(point);
   }
   return geometry::Trajectory(std::move(points));
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/primitives/pose2.h"
 
@@ -23,5 +25,11 @@ double foreseen_speed_mps(const SeenMotion& seen, double after_s);
 /// Keeps its bend for two seconds, then goes straight on, over kForeseen_s; a point every
 /// kForeseenStep_s, or one alone if it stands.
 geometry::Trajectory foreseen_motion(const SeenMotion& seen);
+
+/// What is foreseen of somebody from a time on, driven by one who keeps speeding up for 4 s as over
+/// the first half of a second; none if that is by less than 0.5 m/s². To be kept clear of, not to
+/// be expected: after 4 s recorded drivers are 6 to 9 m behind it in the mean.
+std::optional<geometry::Trajectory> speeding_on(const geometry::Trajectory& foreseen,
+                                                double from_s);
 
 }  // namespace roadbed::planning::obstacles

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "roadbed/planning/obstacles/foreseen_motion.h"
 #include "roadbed/planning/speed/lead.h"
 #include "roadbed/planning/speed/path_profile.h"
 #include "roadbed/planning/speed/speed_controller.h"
@@ -53,19 +54,21 @@ std::vector<bool> crossing_now(const PathProfile& profile, const StGraph& occupa
   return crossing;
 }
 
+/// Who is on the path already, and drives along it.
+bool is_lead(const StGraph& occupancy, const Others& others, std::size_t obstacle) {
+  return !others.crossing[obstacle] &&
+         std::ranges::any_of(occupancy.at(0),
+                             [&](const StInterval& part) { return part.obstacle == obstacle; });
+}
+
 /// Whether an obstacle that is not the lead blocks a place at one of the steps `from` to `to`.
 std::optional<std::size_t> who_blocks(const StGraph& occupancy, const Others& others, int from,
                                       int to, double ahead_m) {
-  const auto is_lead = [&](std::size_t obstacle) {
-    return !others.crossing[obstacle] &&
-           std::ranges::any_of(occupancy.at(0),
-                               [&](const StInterval& part) { return part.obstacle == obstacle; });
-  };
   for (int k = std::max(0, from); k <= to; ++k) {
     for (const StInterval& part : occupancy.at(k)) {
       const bool is_behind = part.from_m < 0.0 || others.following[part.obstacle];
       if (is_behind || ahead_m <= part.from_m || ahead_m >= part.to_m) continue;
-      if (!is_lead(part.obstacle)) return part.obstacle;
+      if (!is_lead(occupancy, others, part.obstacle)) return part.obstacle;
     }
   }
   return std::nullopt;
@@ -85,6 +88,30 @@ std::optional<Met> first_met(const StGraph& occupancy, const Others& others,
     if (who) return Met{*who, StGraph::kStep_s * k};
   }
   return std::nullopt;
+}
+
+/// Who would be met if those who speed up kept doing so.
+std::optional<Met> who_speeds_on(const PathProfile& profile, const std::vector<double>& ahead_m,
+                                 const StGraph& occupancy, const Others& others,
+                                 const RightOfWay::View& view, RightOfWay::Gap gap) {
+  std::vector<Obstacle> faster;
+  std::vector<std::size_t> whose;
+  for (std::size_t i = 0; i < view.traffic.obstacles.size(); ++i) {
+    const Obstacle& obstacle = view.traffic.obstacles[i];
+    if (!obstacle.is_there(view.t_s) || others.following[i]) continue;
+    auto motion = speeding_on(obstacle.motion, view.t_s);
+    if (!motion || is_lead(occupancy, others, i)) continue;
+    faster.push_back(obstacle);
+    faster.back().motion = *std::move(motion);
+    whose.push_back(i);
+  }
+  if (faster.empty()) return std::nullopt;
+  const StGraph sooner(profile, Traffic{faster}, view.t_s,
+                       static_cast<int>(ahead_m.size()) + gap.after, kCrossingMargin_m);
+  const std::vector<bool> all(faster.size(), true), none(faster.size(), false);
+  auto met = first_met(sooner, {all, none}, ahead_m, gap);
+  if (met) met->obstacle = whose[met->obstacle];
+  return met;
 }
 
 }  // namespace
@@ -252,6 +279,9 @@ std::optional<std::string> RightOfWay::who_comes(const StopPoint& place, const V
   const Others others{crossing_now(way.profile, occupancy, view), std::move(following)};
   auto met = first_met(occupancy, others, way.ahead_m, gap);
   if (!met) met = first_met(occupancy, others, way.most_m, gap);
+  if (!met && task_.others_within && gap.after == kGapToTake.after) {
+    met = who_speeds_on(way.profile, way.ahead_m, occupancy, others, view, gap);
+  }
   if (met) {
     const Obstacle& obstacle = view.traffic.obstacles[met->obstacle];
     return fmt::format("{}: {} {} would be met in {:.1f} s", place.name, obstacle.kind, obstacle.id,

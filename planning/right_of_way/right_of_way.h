@@ -24,10 +24,11 @@ struct StopConstraint {
 ///
 /// A gap is good if the vehicle, driving on from here, comes to what it crosses 1 s after the
 /// vehicle before it and leaves 1.5 s before the next one, whether it speeds up by 1 m/s² or as its
-/// style does. Who drives along on the path already is the cruise control's lead, and not looked at
-/// here. Somebody may come from where nothing is seen (hidden_traffic.h): for that one the vehicle
-/// stops as late as it may, where more is seen, and creeps on when for 3 s nobody has come, until
-/// it is seen that nobody does, or until it is in the way.
+/// style does, and whether those who speed up, if they are foreseen, do so for 1 s or for 4 s. Who
+/// drives along on the path already is the cruise control's lead, and not looked at here. Somebody
+/// may come from where nothing is seen (hidden_traffic.h): for that one the vehicle stops as late
+/// as it may, where more is seen, and creeps on when for 3 s nobody has come, until it is seen that
+/// nobody does, or until it is in the way.
 class RightOfWay {
  public:
   /// Time that has to be between two who cross, before and after the vehicle; in steps of 0.1 s.

@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "roadbed/planning/obstacles/foreseen_motion.h"
 #include "roadbed/tests/support/straight_world.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
@@ -183,6 +184,29 @@ TEST_F(WaitingAtAPlace, GapIsTakenOnlyIfItIsGoodHoweverTheVehicleSpeedsUp) {
     planning::RightOfWay rules(scenario_.vehicle, scenario_.options, world_);
     EXPECT_EQ(look(rules, 0.0, 0.5, 0.0).has_value(), must_wait) << most_mps2;
   }
+}
+
+// At 4 m/s, and by 2 m/s² faster for a second, the other one is at the crossing after 7 s, when the
+// vehicle has been gone for 3; speeding up for 4 s, after 4.
+TEST_F(WaitingAtAPlace, GapIsTakenOnlyIfWhoSpeedsUpMayGoOn) {
+  place(planning::StopKind::give_way);
+  const auto car = [](double acceleration_mps2, double way_m) {
+    return planning::Obstacle{
+        .id = "other",
+        .motion = planning::foreseen_motion({.pose = {75.0, -way_m, M_PI_2},
+                                             .speed_mps = 4.0,
+                                             .acceleration_mps2 = acceleration_mps2})};
+  };
+  const auto waits = [&](const planning::Obstacle& other, bool is_foreseen) {
+    world_.obstacles = {other};
+    world_.others_within.reset();
+    if (is_foreseen) world_.others_within.emplace();
+    planning::RightOfWay rules(scenario_.vehicle, scenario_.options, world_);
+    return look(rules, 0.0, 0.5, 0.0).has_value();
+  };
+  EXPECT_TRUE(waits(car(2.0, 41.0), true));
+  EXPECT_FALSE(waits(car(2.0, 41.0), false)) << "it is known what it will do";
+  EXPECT_FALSE(waits(car(0.0, 41.0), true));
 }
 
 TEST_F(WaitingAtAPlace, WhoIsMetIsNamed) {
