@@ -8,9 +8,10 @@ Each map is converted by netconvert, without an offset, so that both see the sam
 is a random trip of at least 400 m among random trips of others; SUMO moves these every 0.1 s, `roadbed
 pilot` is told of those within 200 m and of the traffic lights, and the vehicle is put where its
 trajectory has it 0.1 s later (where that is beside SUMO's lanes across a junction, as those of the map
-differ, on the nearest one for 3 s: nobody sees a vehicle that is on none). The same trip in the same traffic is then driven by SUMO's own driver,
-who speeds up by 2.6 m/s², brakes by 4.5, keeps 1 s to others and does not slow down for bends of the
-road; --style sporty comes nearer to that than our normal style.
+differ, on the nearest one for 3 s: nobody sees a vehicle that is on none). The same trip in the same
+traffic is then driven by SUMO's own driver, who speeds up by 2.6 m/s², brakes by 4.5, keeps 1 s to
+others and does not slow down for bends of the road; --style sporty comes nearer to that than our normal
+style.
     jams       of the drives that are not done in time, those that SUMO's own driver does not do either
     hits       collisions that SUMO reports of the vehicle, each 0.1 s; nearer than 2.5 m to who is ahead on
                the lane that SUMO has it on is one
