@@ -28,7 +28,7 @@ geometry::Trajectory foreseen_motion(const SeenMotion& seen);
 
 /// What is foreseen of somebody from a time on, driven by one who keeps speeding up for 4 s as over
 /// the first half of a second; none if that is by less than 0.5 m/s². To be kept clear of, not to
-/// be expected: after 4 s recorded drivers are 6 to 9 m behind it in the mean.
+/// be expected: most speed up for a shorter time.
 std::optional<geometry::Trajectory> speeding_on(const geometry::Trajectory& foreseen,
                                                 double from_s);
 

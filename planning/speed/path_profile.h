@@ -46,7 +46,8 @@ void limit_speed_in_bends(PathProfile& profile, const geometry::VehicleShape& ve
                           const BendLimits& limits);
 
 /// Distances after 0, 0.1, 0.2 … s of driving on freely to what the line's ceiling wants, until
-/// `until_m` is passed; for 15 s at most. As the cruise control speeds up over most of it: 1 m/s².
+/// `until_m` is passed; for 15 s at most.
+/// @param speeds_up_mps2  1 m/s² is what the cruise control comes to while it sets off.
 std::vector<double> drive_on(const PathProfile& profile, double speed_mps, double until_m,
                              double speeds_up_mps2 = 1.0);
 

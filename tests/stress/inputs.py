@@ -196,21 +196,21 @@ def strips_of_a_road(folder: Path, n: int) -> Path:
     return open_drive(folder, road(1, length=n, sections=sections, extra=surface))
 
 
-def profile_of_a_road(folder: Path, n: int, begin: str, end: str, record: str) -> Path:
+def profile_of_a_road(folder: Path, n: int, profile: str, record: str) -> Path:
     """A road of 100 m whose records of one kind go up and down n times."""
     records = "".join(
         f'<{record} s="{100 * i / n:g}" a="{0.05 * (i % 2):g}" b="{0.001 * (-1) ** i:g}" c="0" d="0"/>'
         for i in range(n)
     )
-    return open_drive(folder, road(1, extra=begin + records + end))
+    return open_drive(folder, road(1, extra=f"<{profile}>{records}</{profile}>"))
 
 
 def elevations_of_a_road(folder: Path, n: int) -> Path:
-    return profile_of_a_road(folder, n, "<elevationProfile>", "</elevationProfile>", "elevation")
+    return profile_of_a_road(folder, n, "elevationProfile", "elevation")
 
 
 def tilts_of_a_road(folder: Path, n: int) -> Path:
-    return profile_of_a_road(folder, n, "<lateralProfile>", "</lateralProfile>", "superelevation")
+    return profile_of_a_road(folder, n, "lateralProfile", "superelevation")
 
 
 def offsets_of_lanes(folder: Path, n: int) -> Path:

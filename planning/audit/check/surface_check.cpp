@@ -276,14 +276,14 @@ class SurfaceCheck {
     return grown;
   }
 
-  /// The part of an edge within the grown rectangle, and of what follows on it as much as an open
-  /// place has to be long.
+  /// The part of an edge within the grown rectangle, and of what follows on it more than an open
+  /// place has to be long, so that no such place is cut short.
   std::optional<Segment> near_part(const Segment& edge,
                                    const std::array<Vector2d, 4>& grown) const {
     const std::optional<Interval> part = part_within(edge, grown);
     if (!part) return std::nullopt;
     const Vector2d along = edge.to - edge.from;
-    const double more = 4.0 * beside_m_ / along.norm();
+    const double more = 6.0 * beside_m_ / along.norm();
     return Segment{edge.from + std::max(0.0, part->from - more) * along,
                    edge.from + std::min(1.0, part->to + more) * along};
   }

@@ -187,7 +187,7 @@ TEST_F(WaitingAtAPlace, GapIsTakenOnlyIfItIsGoodHoweverTheVehicleSpeedsUp) {
 }
 
 // At 4 m/s, and by 2 m/s² faster for a second, the other one is at the crossing after 7 s, when the
-// vehicle has been gone for 3; speeding up for 4 s, after 4.
+// vehicle has been gone for 3; speeding up for 4 s, after 4.8 s.
 TEST_F(WaitingAtAPlace, GapIsTakenOnlyIfWhoSpeedsUpMayGoOn) {
   place(planning::StopKind::give_way);
   const auto car = [](double acceleration_mps2, double way_m) {
