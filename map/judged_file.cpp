@@ -102,7 +102,8 @@ JudgedFile judge_open_drive(std::string bytes, const std::string& name,
   judged.lines = opendrive::rules::element_lines(*xml, document);
   judged.suppressions = suppressions_of(*xml);
   read_into(judged, [&] {
-    RoadMapParts parts = opendrive::read(*std::move(xml), std::move(document), {});
+    RoadMapParts parts =
+        opendrive::read(*std::move(xml), std::move(document), {.max_error_m = options.max_error_m});
     opendrive::rules::mark_told(parts.remarks, judged.findings);
     return parts;
   });

@@ -66,7 +66,8 @@ JudgedFile judge(std::string bytes, const std::string& name,
   MapBytes map = map_bytes(std::move(bytes), name);
   if (map.format.judge != nullptr) return map.format.judge(std::move(map.bytes), name, options);
   JudgedFile judged;
-  judged.road_map = map.format.read(std::move(map.bytes), name, {});
+  judged.road_map =
+      map.format.read(std::move(map.bytes), name, {.max_error_m = options.max_error_m});
   return judged;
 }
 

@@ -30,7 +30,8 @@ struct ValidateOptions {
   double min_overlap_m = 5.0;                  ///< along lanes that should not overlap
   double min_tagged_speed_kmph = 10.0;         ///< Autoware's range of speed_limit tags
   double max_tagged_speed_kmph = 50.0;
-  RuleChoice choice = {};  ///< which rules, and how grave
+  double max_error_m = 1e-3;  ///< chord error of the lines that rules look at
+  RuleChoice choice = {};     ///< which rules, and how grave
 };
 
 /// Line of each element that findings name: "road 12", "lane 12/0/-1", "lanelet 4".

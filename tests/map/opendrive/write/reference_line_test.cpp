@@ -26,10 +26,11 @@ Curvatures curvatures(const geometry::PlanCurve& curve) {
 // The heading integrated by the midpoint rule.
 geometry::Pose2 end_of(const geometry::PlanPiece& piece) {
   constexpr int steps = 4000;
-  const auto [k0, k1] = curvatures(piece.curve);
+  const Curvatures k = curvatures(piece.curve);
   const double step_m = piece.length_m / steps;
   const auto heading_rad = [&](double s_m) {
-    return piece.start.heading_rad + s_m * (k0 + 0.5 * (k1 - k0) * s_m / piece.length_m);
+    return piece.start.heading_rad +
+           s_m * (k.from_per_m + 0.5 * (k.to_per_m - k.from_per_m) * s_m / piece.length_m);
   };
   geometry::Pose2 at = piece.start;
   for (int i = 0; i < steps; ++i) {
