@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <regex>
 #include <string>
 
 namespace {
@@ -28,11 +29,22 @@ int say(const std::string& text, char* message, std::size_t size) {
   return 1;
 }
 
-int say_fault(const Context& context, char* message, std::size_t size) {
+/// PROJ takes any other text for a name and looks for one like it: "WGS" would be WGS 72.
+bool is_definition(const std::string& crs) {
+  static const std::regex code("\\s*([A-Za-z]\\w*:\\w+(\\+(\\w+:)?\\w+)?|(urn:|https?:).*)\\s*");
+  const auto says = [&](const char* word) { return crs.find(word) != std::string::npos; };
+  return says("[") || says("proj=") || says("init=") || crs.starts_with("{") ||
+         (crs.size() < 200 && std::regex_match(crs, code));
+}
+
+int say_fault(const Context& context, const char* crs, char* message, std::size_t size) {
+  if (!is_definition(crs)) {
+    return say("a system is a code (EPSG:32632), a PROJ string or well-known text", message, size);
+  }
   const int fault = proj_context_errno(context.get());
-  return say(
-      fault == 0 ? "it is no coordinate system" : proj_context_errno_string(context.get(), fault),
-      message, size);
+  if (fault == 0) return say("it is no coordinate system", message, size);
+  if (fault == PROJ_ERR_OTHER) return say("it knows no such system", message, size);
+  return say(proj_context_errno_string(context.get(), fault), message, size);
 }
 
 /// Where PROJ's own tables are, in a package that brings them along; empty: where PROJ has them.
@@ -58,6 +70,7 @@ Context quiet_context() {
 /// may come without their plus signs.
 Object horizontal(const Context& context, const char* crs) {
   std::string text = crs;
+  if (!is_definition(text)) return nullptr;
   const auto says = [&](const char* word) { return text.find(word) != std::string::npos; };
   const bool is_well_known_text = says("[");
   if (!is_well_known_text && says("proj=") && !says("type=crs")) text += " +type=crs";
@@ -104,7 +117,7 @@ const Path& kept_path_from(const char* crs) {
 int roadbed_proj_lon_lat(const char* crs, int to_lon_lat, double* xy, std::size_t count,
                          char* message, std::size_t message_size) {
   const Path& path = kept_path_from(crs);
-  if (!path.forward) return say_fault(path.context, message, message_size);
+  if (!path.forward) return say_fault(path.context, crs, message, message_size);
   constexpr std::size_t stride = 2 * sizeof(double);
   proj_trans_generic(path.forward.get(), to_lon_lat != 0 ? PJ_FWD : PJ_INV, xy, stride, count,
                      xy + 1, stride, count, nullptr, 0, 0, nullptr, 0, 0);
@@ -118,10 +131,10 @@ int roadbed_proj_wkt(const char* crs, char* wkt, std::size_t wkt_size, char* mes
                      std::size_t message_size) {
   const Context context = quiet_context();
   const Object object = horizontal(context, crs);
-  if (!object) return say_fault(context, message, message_size);
+  if (!object) return say_fault(context, crs, message, message_size);
   const char* options[] = {"MULTILINE=NO", nullptr};
   const char* text = proj_as_wkt(context.get(), object.get(), PJ_WKT1_GDAL, options);
-  if (text == nullptr) return say_fault(context, message, message_size);
+  if (text == nullptr) return say_fault(context, crs, message, message_size);
   if (std::strlen(text) >= wkt_size)
     return say("its description is too long", message, message_size);
   std::strcpy(wkt, text);

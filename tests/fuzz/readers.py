@@ -100,8 +100,9 @@ def options_of(name: str) -> list[str]:
     """
     if name in SUFFIXES:
         return [f"-max_len={MOST_BYTES}", "-entropic=0"]
-    # Of a packed byte a hundred points may come, so that long ones are slow.
-    return ["-entropic=0", "-max_len=1600"] if name == "las" else ["-entropic=0"]
+    # Of a packed byte of .laz a hundred points may come; rows of a table are all alike.
+    most_bytes = 1600 if name == "las" else 512 if name.endswith("_csv") else None
+    return ["-entropic=0"] + ([f"-max_len={most_bytes}"] if most_bytes else [])
 
 
 def seeds_of(name: str, build: Path) -> list[str]:

@@ -55,6 +55,26 @@ TEST(ToLonLat, RefusesWhatProjDoesNotKnow) {
   EXPECT_THROW(to_lon_lat("", points), InputError);
 }
 
+// PROJ looks for a name like any other text, and finds WGS 72 for "WGS".
+TEST(ProjectionFault, IsWhatNamesASystemByChance) {
+  for (const char* crs : {"WGS", "WGS 84 / UTM zone 32N", "berlin", "utm", "32632", "a:b:c", ""}) {
+    EXPECT_EQ(projection_fault(crs),
+              "a system is a code (EPSG:32632), a PROJ string or well-known text")
+        << crs;
+  }
+  EXPECT_EQ(projection_fault("EPSG:99999"), "it knows no such system");
+}
+
+TEST(ProjectionFault, IsNoneOfEachWayToNameASystem) {
+  for (const std::string crs :
+       {"EPSG:25832", " epsg:25832\n", "EPSG:25832+5783", "IGNF:LAMB93",
+        "urn:ogc:def:crs:EPSG::25832", "http://www.opengis.net/def/crs/EPSG/0/25832",
+        "+init=epsg:25832", "proj=utm zone=32", "+proj=utm +zone=32 +datum=WGS84"}) {
+    EXPECT_EQ(projection_fault(crs), "") << crs;
+  }
+  EXPECT_EQ(projection_fault(well_known_text("EPSG:25832")), "");
+}
+
 TEST(WellKnownText, NamesTheProjection) {
   const std::string wkt = well_known_text("EPSG:25832");
   EXPECT_EQ(wkt.substr(0, 6), "PROJCS");
