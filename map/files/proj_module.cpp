@@ -29,24 +29,6 @@ int say(const std::string& text, char* message, std::size_t size) {
   return 1;
 }
 
-/// PROJ takes any other text for a name and looks for one like it: "WGS" would be WGS 72.
-bool is_definition(const std::string& crs) {
-  static const std::regex code("\\s*([A-Za-z]\\w*:\\w+(\\+(\\w+:)?\\w+)?|(urn:|https?:).*)\\s*");
-  const auto says = [&](const char* word) { return crs.find(word) != std::string::npos; };
-  return says("[") || says("proj=") || says("init=") || crs.starts_with("{") ||
-         (crs.size() < 200 && std::regex_match(crs, code));
-}
-
-int say_fault(const Context& context, const char* crs, char* message, std::size_t size) {
-  if (!is_definition(crs)) {
-    return say("a system is a code (EPSG:32632), a PROJ string or well-known text", message, size);
-  }
-  const int fault = proj_context_errno(context.get());
-  if (fault == 0) return say("it is no coordinate system", message, size);
-  if (fault == PROJ_ERR_OTHER) return say("it knows no such system", message, size);
-  return say(proj_context_errno_string(context.get(), fault), message, size);
-}
-
 /// Where PROJ's own tables are, in a package that brings them along; empty: where PROJ has them.
 std::string own_tables() {
   Dl_info found{};
@@ -66,46 +48,81 @@ Context quiet_context() {
   return context;
 }
 
-/// Heights are another matter: of a compound system the horizontal part. The words of a PROJ string
-/// may come without their plus signs.
-Object horizontal(const Context& context, const char* crs) {
-  std::string text = crs;
-  if (!is_definition(text)) return nullptr;
-  const auto says = [&](const char* word) { return text.find(word) != std::string::npos; };
-  const bool is_well_known_text = says("[");
-  if (!is_well_known_text && says("proj=") && !says("type=crs")) text += " +type=crs";
-  Object object(proj_create(context.get(), text.c_str()));
-  if (object && proj_get_type(object.get()) == PJ_TYPE_COMPOUND_CRS) {
-    object.reset(proj_crs_get_sub_crs(context.get(), object.get(), 0));
+/// Of the thread: its tables stay open, which takes milliseconds.
+PJ_CONTEXT* kept_context() {
+  thread_local const Context context = quiet_context();
+  return context.get();
+}
+
+/// An object, or why there is none.
+struct Made {
+  Object object;
+  std::string fault;
+};
+
+Made made(PJ* object) {
+  if (object != nullptr) return {Object(object), {}};
+  const int fault = proj_context_errno(kept_context());
+  const bool says_nothing = fault == 0 || fault == PROJ_ERR_OTHER;
+  return {nullptr, says_nothing ? "it cannot be understood"
+                                : proj_context_errno_string(kept_context(), fault)};
+}
+
+/// "EPSG:25832": found by PROJ itself, too, but unknown ones a hundred times as slowly.
+Made of_code(const std::string& authority, const std::string& code) {
+  Object object(proj_create_from_database(kept_context(), authority.c_str(), code.c_str(),
+                                          PJ_CATEGORY_CRS, 0, nullptr));
+  if (!object) return {nullptr, "it knows no such system"};
+  return {std::move(object), {}};
+}
+
+/// PROJ takes any other text for a name and looks for one like it: "WGS" would be WGS 72.
+Made system_of(const std::string& crs) {
+  static const std::regex code("\\s*([A-Za-z]\\w*):(\\w+)\\s*");
+  static const std::regex text(
+      "\\s*(\\w*(CS|CRS)\\s*\\[|\\{|urn:|https?:|[A-Za-z]\\w*:\\w+\\+)[^]*", std::regex::icase);
+  if (std::smatch found; crs.size() < 100 && std::regex_match(crs, found, code)) {
+    return of_code(found[1], found[2]);
   }
-  if (!object || proj_is_crs(object.get()) == 0) return nullptr;
-  return Object(proj_crs_demote_to_2D(context.get(), nullptr, object.get()));
+  const auto says = [&](const char* word) { return crs.find(word) != std::string::npos; };
+  const bool is_text = std::regex_match(crs.substr(0, 100), text);
+  if (!is_text && (says("proj=") || says("init="))) {  // its words may come without plus signs
+    return made(proj_create(kept_context(), (says("type=crs") ? crs : crs + " +type=crs").c_str()));
+  }
+  if (is_text) return made(proj_create(kept_context(), crs.c_str()));
+  return {nullptr, "a system is a code (EPSG:32632), a PROJ string or well-known text"};
+}
+
+/// Heights are another matter: of a compound system the horizontal part.
+Made horizontal(const std::string& crs) {
+  Made system = system_of(crs);
+  if (!system.object) return system;
+  PJ* object = system.object.get();
+  if (proj_get_type(object) == PJ_TYPE_COMPOUND_CRS) {
+    system.object.reset(proj_crs_get_sub_crs(kept_context(), object, 0));
+    object = system.object.get();
+  }
+  if (object == nullptr || proj_is_crs(object) == 0) return {nullptr, "it is no coordinate system"};
+  return made(proj_crs_demote_to_2D(kept_context(), nullptr, object));
 }
 
 /// From a system to longitude and latitude.
-struct Path {
-  Context context = quiet_context();  // of the object below, so made before it
-  Object forward;
-};
-
-Path path_from(const char* crs) {
-  Path path;
-  PJ_CONTEXT* const context = path.context.get();
-  const Object from = horizontal(path.context, crs);
-  if (!from) return path;
-  const Object to(proj_create(context, "OGC:CRS84"));
-  const Object found(
-      proj_create_crs_to_crs_from_pj(context, from.get(), to.get(), nullptr, nullptr));
-  if (found) path.forward.reset(proj_normalize_for_visualization(context, found.get()));
-  return path;
+Made path_from(const std::string& crs) {
+  Made from = horizontal(crs);
+  if (!from.object) return from;
+  const Object to(proj_create(kept_context(), "OGC:CRS84"));
+  const Object found(proj_create_crs_to_crs_from_pj(kept_context(), from.object.get(), to.get(),
+                                                    nullptr, nullptr));
+  if (!found) return {nullptr, "it has no way to longitude and latitude"};
+  return made(proj_normalize_for_visualization(kept_context(), found.get()));
 }
 
 /// To find a path takes milliseconds, to go along it nanoseconds.
-const Path& kept_path_from(const char* crs) {
+const Made& kept_path_from(const std::string& crs) {
+  kept_context();  // goes after the path
   thread_local std::string kept_crs;
-  thread_local Path kept;
-  if (!kept.forward || kept_crs != crs) {
-    kept.forward.reset();  // before its context goes
+  thread_local Made kept;
+  if (!kept.object || kept_crs != crs) {
     kept = path_from(crs);
     kept_crs = crs;
   }
@@ -116,10 +133,10 @@ const Path& kept_path_from(const char* crs) {
 
 int roadbed_proj_lon_lat(const char* crs, int to_lon_lat, double* xy, std::size_t count,
                          char* message, std::size_t message_size) {
-  const Path& path = kept_path_from(crs);
-  if (!path.forward) return say_fault(path.context, crs, message, message_size);
+  const Made& path = kept_path_from(crs);
+  if (!path.object) return say(path.fault, message, message_size);
   constexpr std::size_t stride = 2 * sizeof(double);
-  proj_trans_generic(path.forward.get(), to_lon_lat != 0 ? PJ_FWD : PJ_INV, xy, stride, count,
+  proj_trans_generic(path.object.get(), to_lon_lat != 0 ? PJ_FWD : PJ_INV, xy, stride, count,
                      xy + 1, stride, count, nullptr, 0, 0, nullptr, 0, 0);
   for (std::size_t i = 0; i < 2 * count; ++i) {
     if (!std::isfinite(xy[i])) return say("a point is outside its domain", message, message_size);
@@ -129,12 +146,11 @@ int roadbed_proj_lon_lat(const char* crs, int to_lon_lat, double* xy, std::size_
 
 int roadbed_proj_wkt(const char* crs, char* wkt, std::size_t wkt_size, char* message,
                      std::size_t message_size) {
-  const Context context = quiet_context();
-  const Object object = horizontal(context, crs);
-  if (!object) return say_fault(context, crs, message, message_size);
+  const Made system = horizontal(crs);
+  if (!system.object) return say(system.fault, message, message_size);
   const char* options[] = {"MULTILINE=NO", nullptr};
-  const char* text = proj_as_wkt(context.get(), object.get(), PJ_WKT1_GDAL, options);
-  if (text == nullptr) return say_fault(context, crs, message, message_size);
+  const char* text = proj_as_wkt(kept_context(), system.object.get(), PJ_WKT1_GDAL, options);
+  if (text == nullptr) return say("it has no well-known text", message, message_size);
   if (std::strlen(text) >= wkt_size)
     return say("its description is too long", message, message_size);
   std::strcpy(wkt, text);
