@@ -1,5 +1,9 @@
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -43,15 +47,38 @@ void use(const RoadMap& road_map) {
   guarded([&] { totals_of(road_map); });
 }
 
+/// Bytes as a file, as long as it lives.
+class OpenedFile {
+ public:
+  explicit OpenedFile(const std::string& bytes) : descriptor_(::memfd_create("fuzz", MFD_CLOEXEC)) {
+    if (::pwrite(descriptor_, bytes.data(), bytes.size(), 0) < 0) std::abort();
+  }
+  ~OpenedFile() { ::close(descriptor_); }
+  OpenedFile(const OpenedFile&) = delete;
+  OpenedFile& operator=(const OpenedFile&) = delete;
+
+  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
 }  // namespace
 
 // The bytes as they are, then with right sizes and checksums, so that what is fuzzed are the
-// readers behind.
+// readers behind; of some sizes as a file, or with a chunk that is damaged after all.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string bytes(reinterpret_cast<const char*>(data), size);
   guarded([&] { verify_compiled_map(bytes, "as it is"); });
   roadbed::tests::reseal(bytes);
+  if (size % 16 == 1) bytes.back() ^= 1;
   guarded([&] { verify_compiled_map(bytes, "fuzz"); });
-  guarded([&] { use(read_compiled_map(bytes, "fuzz")); });
+  if (size % 4 != 0) {
+    guarded([&] { use(read_compiled_map(bytes, "fuzz")); });
+    return 0;
+  }
+  const OpenedFile file(bytes);
+  guarded([&] { use(open_compiled_map(file.path())); });
+  guarded([&] { source_of_compiled_map(file.path()); });
   return 0;
 }

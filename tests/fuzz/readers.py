@@ -54,7 +54,7 @@ SOURCES = {
 }
 
 #: Functions beside them that read nothing.
-WRITERS = re.compile(r"write_|json_of|FileWriter")
+WRITERS = re.compile(r"write_|add_list|json_of|FileWriter")
 
 #: Other folders whose files are seeds, too.
 FOLDERS = {
