@@ -11,6 +11,7 @@
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/storage/output_file.h"
+#include "roadbed/map/storage/output_place.h"
 
 namespace roadbed::map {
 namespace {
@@ -61,7 +62,7 @@ void save_map(const RoadMap& road_map, const std::filesystem::path& file,
 }
 
 void write_output_parts(const std::filesystem::path& file, const std::vector<OutputPart>& parts,
-                        bool force) {
+                        bool force, const std::vector<std::filesystem::path>& inputs) {
   if (parts.size() == 1) return write_output(file, parts.front().bytes, force);
   std::string stem = file.string();
   const std::string& own = parts.front().suffix;
@@ -73,6 +74,7 @@ void write_output_parts(const std::filesystem::path& file, const std::vector<Out
                                            ? std::filesystem::path(stem + part.suffix)
                                            : file.parent_path() / part.name;
     check_writable(name, force);
+    refuse_input(name, inputs);
     files.push_back(std::make_unique<OutputFile>(name, force));
     files.back()->write(0, part.bytes);
   }

@@ -25,9 +25,10 @@ void save_map(const RoadMap& road_map, const std::filesystem::path& file,
 
 /// Writes the files of an output beside each other: none is put in place before all are written.
 /// @param file  that of the first part; its suffix is the first's, or its own.
+/// @param inputs  never replaced.
 /// @throws OutputError if one of them cannot be written, or is there without `force`.
 void write_output_parts(const std::filesystem::path& file, const std::vector<OutputPart>& parts,
-                        bool force);
+                        bool force, const std::vector<std::filesystem::path>& inputs = {});
 
 /// A map file's bytes, XML in UTF-16 as UTF-8, and their format.
 struct MapBytes {

@@ -8,6 +8,8 @@
 
 #include "roadbed/geometry/index/box_tree.h"
 #include "roadbed/geometry/primitives/cross.h"
+#include "roadbed/geometry/primitives/work_limit.h"
+#include "roadbed/map/derived/crowded.h"
 #include "roadbed/map/derived/lane_piece.h"
 #include "roadbed/map/index/road_map_index.h"
 
@@ -160,6 +162,8 @@ OverlapsByPair overlaps_of(const LaneGraph& graph, const std::vector<LanePiece>&
   for (const LanePiece& piece : pieces) boxes.push_back(piece.box());
   const geometry::BoxTree tree(boxes);
   OverlapsByPair overlaps;
+  constexpr std::size_t kStepsOfPair = 5;  // it is kept, which takes some 300 bytes
+  geometry::WorkBudget kept(geometry::most_steps(pieces.size()));
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const LanePiece& one = pieces[i];
     tree.visit(boxes[i], [&](std::size_t index) {
@@ -167,6 +171,9 @@ OverlapsByPair overlaps_of(const LaneGraph& graph, const std::vector<LanePiece>&
       if (other.lane <= one.lane || !is_asked(one.lane, other.lane)) return;
       if (!are_apart(graph, one.lane, other.lane)) return;
       if (std::abs(one.z_m - other.z_m) > headroom_m) return;
+      if (!kept.spend(kStepsOfPair)) {
+        refuse_crowded("conflicts", "so many lanes lie over each other");
+      }
       add_overlaps(one, other, overlaps[{one.lane, other.lane}]);
     });
   }

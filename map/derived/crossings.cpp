@@ -4,6 +4,8 @@
 #include <map>
 
 #include "roadbed/geometry/primitives/disjoint_sets.h"
+#include "roadbed/geometry/primitives/work_limit.h"
+#include "roadbed/map/derived/crowded.h"
 
 namespace roadbed::map::inline derived {
 namespace {
@@ -24,11 +26,16 @@ void name_turns(const RoadMap& road_map, const std::vector<bool>& counts, std::u
     is_turn[lane.id.index] = counts[lane.id.index] && turns(lane);
   }
   geometry::DisjointSets sets(road_map.lanes().size());
+  geometry::WorkBudget matches(geometry::most_steps(road_map.lanes().size()));
   constexpr double step_m = 2.0, inside_m = 0.01;
   for (const Lane& lane : road_map.lanes()) {
     if (!is_turn[lane.id.index]) continue;
     for (double s_m = 0.5 * step_m; s_m < lane.length_m(); s_m += step_m) {
-      for (const LaneMatch& match : road_map.locate(lane.centre.in_map.at(s_m), inside_m, false)) {
+      const auto found = road_map.locate(lane.centre.in_map.at(s_m), inside_m, false);
+      if (!matches.spend(found.size())) {
+        refuse_crowded("crossings", "so many lanes that turn lie over each other");
+      }
+      for (const LaneMatch& match : found) {
         const std::uint32_t other = match.place.lane.index;
         if (is_turn[other]) sets.join(lane.id.index, other);
       }

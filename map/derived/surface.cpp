@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "roadbed/geometry/primitives/work_limit.h"
-#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/derived/crowded.h"
 
 namespace roadbed::map::inline derived {
 namespace {
@@ -124,11 +124,7 @@ Surface surface_of(std::span<const Polygon> polygons, const SurfaceOptions& opti
     geometry::United united = geometry::unite_and_report(polygons, options.weld_m);
     return {std::move(united.polygons), united.moved_points, united.most_moved_m};
   } catch (const geometry::TooMuchWork& error) {
-    throw InputError({.file = "map",
-                      .element = "surface",
-                      .found = error.what(),
-                      .needed = "roads that lie beside each other but for their junctions",
-                      .remedy = "cut the map with map clip, or remove what lies there twice"});
+    refuse_crowded("surface", error.what());
   }
 }
 

@@ -11,6 +11,7 @@
 #include <memory>
 #include <regex>
 #include <string>
+#include <string_view>
 
 namespace {
 
@@ -41,6 +42,7 @@ std::string own_tables() {
 Context quiet_context() {
   Context context(proj_context_create());
   proj_log_level(context.get(), PJ_LOG_NONE);
+  proj_context_set_enable_network(context.get(), 0);
   proj_context_use_proj4_init_rules(context.get(), 1);  // +init=epsg:25832, as old maps have it
   static const std::string tables = own_tables();
   const char* const folder = tables.c_str();
@@ -76,11 +78,24 @@ Made of_code(const std::string& authority, const std::string& code) {
   return {std::move(object), {}};
 }
 
+/// Whether a system has PROJ open a file by its path: "+nadgrids=/dev/stdin". Grids that PROJ has
+/// itself go by their names alone.
+bool names_a_path(const std::string& crs) {
+  for (std::size_t at = crs.find('/'); at != std::string::npos; at = crs.find('/', at + 1)) {
+    const std::size_t start = crs.find_last_of(" \t\r\n\"", at);
+    const std::string_view word(&crs[start + 1],
+                                at - (start + 1));  // also behind npos, which is -1
+    if (word.find('=') != word.npos) return true;
+  }
+  return crs.find("PARAMETERFILE") != crs.npos || crs.find("\"filename\"") != crs.npos;
+}
+
 /// PROJ takes any other text for a name and looks for one like it: "WGS" would be WGS 72.
 Made system_of(const std::string& crs) {
   static const std::regex code("\\s*([A-Za-z]\\w*):(\\w+)\\s*");
   static const std::regex text(
       "\\s*(\\w*(CS|CRS)\\s*\\[|\\{|urn:|https?:|[A-Za-z]\\w*:\\w+\\+)[^]*", std::regex::icase);
+  if (names_a_path(crs)) return {nullptr, "it names a file, which no coordinate system may"};
   if (std::smatch found; crs.size() < 100 && std::regex_match(crs, found, code)) {
     return of_code(found[1], found[2]);
   }

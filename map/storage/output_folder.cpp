@@ -201,16 +201,7 @@ void OutputFolder::commit() {
 }
 
 void OutputFolder::check_inputs() const {
-  std::error_code error;
-  for (const fs::path& input : options_.inputs) {
-    const auto is_input = [&](const std::string& name) {
-      return fs::equivalent(place_.path / name, input, error);
-    };
-    if (std::ranges::any_of(names_, is_input)) {
-      refuse_output(input, "is an input, which the output would replace",
-                    "choose another folder for the output");
-    }
-  }
+  for (const std::string& name : names_) refuse_input(place_.path / name, options_.inputs);
 }
 
 void OutputFolder::keep_permissions_of_files() const {
@@ -268,6 +259,10 @@ bool OutputFolder::exchange_names() {
 
 void OutputFolder::put_files_one_by_one() {
   std::error_code error;
+  for (const std::string& name : names_) {  // before the first is replaced
+    if (!fs::is_directory(fs::symlink_status(place_.path / name, error))) continue;
+    refuse_output(place_.path / name, "is a folder", "remove it, or choose another place");
+  }
   for (const std::string& name : names_) {
     const fs::path made = hidden_ / name, file = place_.path / name;
     const bool is_put = options_.force ? ::rename(made.c_str(), file.c_str()) == 0

@@ -53,6 +53,15 @@ void refuse_write(const fs::path& output) {
                 "free some space or choose another folder");
 }
 
+void refuse_input(const fs::path& output, const std::vector<fs::path>& inputs) {
+  std::error_code error;
+  for (const fs::path& input : inputs) {
+    if (!fs::equivalent(output, input, error)) continue;
+    refuse_output(input, "is an input, which the output would replace",
+                  "choose another place for the output");
+  }
+}
+
 OutputPlace look_at_output(const fs::path& output) {
   const auto refuse_look = [&] {
     refuse_output(output, "cannot be looked at: " + cause(), "choose a folder of your own");

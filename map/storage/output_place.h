@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "roadbed/map/files/input_error.h"
 
@@ -22,6 +23,11 @@ class OutputError : public InputError {
 
 /// Says why, by errno.
 [[noreturn]] void refuse_write(const std::filesystem::path& output);
+
+/// No output replaces an input, under whatever name.
+/// @throws OutputError if `output` is one of `inputs`.
+void refuse_input(const std::filesystem::path& output,
+                  const std::vector<std::filesystem::path>& inputs);
 
 /// Where an output goes, and what is there now.
 struct OutputPlace {

@@ -52,9 +52,8 @@ bool may_change(const RoadMap& road_map, DirectedLane way, DirectedLane beside, 
   return link && link->lane == beside.lane && link->same_direction && link->change_allowed();
 }
 
-double turn_at(const Points& points, std::size_t at) {
-  const Eigen::Vector2d before = (points[at] - points[at - 1]).head<2>();
-  const Eigen::Vector2d after = (points[at + 1] - points[at]).head<2>();
+double turn_at(const Eigen::Vector3d& from, const Eigen::Vector3d& at, const Eigen::Vector3d& to) {
+  const Eigen::Vector2d before = (at - from).head<2>(), after = (to - at).head<2>();
   return geometry::wrap_angle(std::atan2(after.y(), after.x()) -
                               std::atan2(before.y(), before.x()));
 }
@@ -65,20 +64,29 @@ double turn_at(const Points& points, std::size_t at) {
 Points edge_line(const Points& border) {
   std::vector<Eigen::Vector2d> plan;
   for (const Eigen::Vector3d& point : border) plan.push_back(point.head<2>());
-  Points points;
+  Points ahead;
   std::size_t i = 0;
   for (const Eigen::Vector2d& kept : geometry::simplify(plan, kRough_m)) {
     while (plan[i] != kept) ++i;
-    points.push_back(border[i]);
+    ahead.push_back(border[i]);
   }
-  const auto step_m = [&](std::size_t at) { return (points[at] - points[at - 1]).norm(); };
-  for (std::size_t at = 1; at + 1 < points.size();) {
-    const bool is_short =
-        (at == 1 && step_m(1) < kStep_m) || (at + 2 == points.size() && step_m(at + 1) < kStep_m);
-    const bool goes = is_short || std::abs(turn_at(points, at)) > kMostTurn_rad;
-    if (goes) points.erase(points.begin() + static_cast<std::ptrdiff_t>(at));
-    at = goes ? 1 : at + 1;
+  std::reverse(ahead.begin(), ahead.end());
+  Points points{ahead.back()};
+  ahead.pop_back();
+  while (ahead.size() > 1) {
+    const Eigen::Vector3d at = ahead.back(), next = *(ahead.end() - 2);
+    const bool is_short = (points.size() == 1 && (at - points[0]).norm() < kStep_m) ||
+                          (ahead.size() == 2 && (next - at).norm() < kStep_m);
+    const bool goes = is_short || std::abs(turn_at(points.back(), at, next)) > kMostTurn_rad;
+    ahead.pop_back();
+    if (!goes) {
+      points.push_back(at);
+    } else if (points.size() > 1) {  // the one before turns otherwise now
+      ahead.push_back(points.back());
+      points.pop_back();
+    }
   }
+  points.insert(points.end(), ahead.begin(), ahead.end());
   points.insert(points.begin() + 1, 0.5 * (points[0] + points[1]));
   points.insert(points.end() - 1, 0.5 * (*(points.end() - 2) + points.back()));
   return points;
@@ -148,7 +156,7 @@ double connection_speed_mps(const RoadMap& road_map, const Net& net,
   double turned_rad = 0.0, length_m = 0.0;
   for (std::size_t i = 1; i < path.size(); ++i) {
     length_m += (path[i] - path[i - 1]).head<2>().norm();
-    if (i + 1 < path.size()) turned_rad += turn_at(path, i);
+    if (i + 1 < path.size()) turned_rad += turn_at(path[i - 1], path[i], path[i + 1]);
   }
   const double curvature_per_m = std::abs(turned_rad) / std::max(length_m, 1.0);
   if (curvature_per_m < 1e-4) return least_mps;

@@ -282,6 +282,35 @@ def signals_of_all_lanes(folder: Path, n: int) -> Path:
     return open_drive(folder, road(1, sections=lanes_section(lanes), extra=extra))
 
 
+def lights_and_stop_lines(folder: Path, n: int) -> Path:
+    """Stop lines of one lane, each for all of its lights, and as many lights that have none."""
+    light = (
+        '<signal id="{}" s="50" t="-5" type="1000001" subtype="-1" dynamic="yes" orientation="+" '
+        'zOffset="0" country="DE" value="-1"/>'
+    )
+    lines = "".join(
+        f'<object id="{i}" type="roadMark" subtype="signalLines" name="StopLine" s="50" t="-2" '
+        'zOffset="0" hdg="1.57" length="0.3" width="3.5" height="0" orientation="+"/>'
+        for i in range(n)
+    )
+    lights = [
+        "<signals>" + "".join(light.format(f"{of}{i}") for i in range(n)) + "</signals>"
+        for of in "ab"
+    ]
+    one = road(1, extra=f"<objects>{lines}</objects>{lights[0]}")
+    return open_drive(folder, one + road(2, 0, 100, extra=lights[1]))
+
+
+def crooked_road(folder: Path, n: int) -> Path:
+    """A road whose pieces each begin to turn anew, so that its borders turn back."""
+    pieces = "".join(
+        f'<geometry s="{i}" x="{i}" y="0" hdg="0" length="1"><spiral curvStart="0" '
+        f'curvEnd="0.{i % 9}"/></geometry>'
+        for i in range(n)
+    )
+    return open_drive(folder, road(1, length=n, pieces=pieces))
+
+
 def repeated_objects(folder: Path, n: int) -> Path:
     objects = "".join(
         f'<object id="{i}" s="50" t="-5" type="barrier" zOffset="0" length="1" width="1" '
@@ -366,6 +395,13 @@ def lanelets_in_a_row(folder: Path, n: int) -> Path:
 
 def same_lanelets(folder: Path, n: int) -> Path:
     return osm(folder, CORNERS + SIDES + "".join(lanelet(100 + i, 11, 12) for i in range(n)))
+
+
+def same_turns(folder: Path, n: int) -> Path:
+    """Lanelets on each other that turn in one crossing."""
+    tag = '<tag k="turn_direction" v="left"/></relation>'
+    turns = (lanelet(100 + i, 11, 12).replace("</relation>", tag) for i in range(n))
+    return osm(folder, CORNERS + SIDES + "".join(turns))
 
 
 def winding_lanelets(folder: Path, n: int) -> Path:
@@ -749,6 +785,11 @@ def outlier(folder: Path, n: int) -> Path:
     rows = [(i * 1e5, 150 + i, 198.2, 0) for i in range(9)]
     rows[4] = (4e5, 150 + n, 198.2 + n, 0)
     return drive(folder, rows)
+
+
+def rows_far_apart(folder: Path, n: int) -> Path:
+    """Rows that are each n metres from the one before, and time enough to drive there."""
+    return drive(folder, ((i * 1e5, 150 + i * n, 198.2, 0) for i in range(20)))
 
 
 def areas_of_a_drive(folder: Path, n: int) -> Path:

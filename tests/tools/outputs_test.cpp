@@ -51,10 +51,40 @@ TEST(Outputs, OfOneNameAreRefused) {
   const TemporaryFolder folder;
   const std::string input = folder.write("town.xodr", town_bytes()),
                     output = (folder / "f").string();
-  const ProgramRun run = run_roadbed({"validate", input, "--junit", output, "--sarif", output});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_THAT(run.err, HasSubstr("--junit and --sarif are both"));
-  EXPECT_FALSE(std::filesystem::exists(output));
+  const auto other = std::filesystem::relative(output).string();
+  for (const std::string& second : {output, other, "./" + other}) {  // none of which is there
+    const ProgramRun run = run_roadbed({"validate", input, "--junit", other, "--sarif", second});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_THAT(run.err, HasSubstr("--junit and --sarif are both"));
+    EXPECT_FALSE(std::filesystem::exists(output));
+  }
+}
+
+TEST(Outputs, BesideTheOneThatIsNamedAreNoInputs) {
+  const TemporaryFolder folder;
+  const std::string input = folder.write("n.edg.xml", bytes_of(data_folder() / "junction.xml"));
+  const ProgramRun run =
+      run_roadbed({"export", input, "-o", (folder / "n.nod.xml").string(), "--force"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_THAT(run.err, HasSubstr("is an input"));
+  EXPECT_EQ(bytes_of(input), bytes_of(data_folder() / "junction.xml"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "n.nod.xml"));
+}
+
+TEST(Outputs, OfJobsAndBatchesAreNoInputs) {
+  const TemporaryFolder folder;
+  const std::string map = folder.write("town.xodr", town_bytes());
+  const ProgramRun jobs =
+      run_roadbed({"jobs", "validate", (folder / "*.xodr").string(), "-o", map, "--force"});
+  EXPECT_EQ(jobs.status, 3);
+  EXPECT_THAT(jobs.err, HasSubstr("is an input"));
+  EXPECT_EQ(bytes_of(map), town_bytes());
+  const std::string line = "{\"job\":\"validate\",\"inputs\":[\"town.xodr\"]}\n";
+  const std::string file = folder.write("results.jsonl", line);
+  const ProgramRun batch = run_roadbed({"batch", file, "-o", folder.path().string(), "--force"});
+  EXPECT_EQ(batch.status, 3);
+  EXPECT_THAT(batch.err, HasSubstr("is an input"));
+  EXPECT_EQ(bytes_of(file), line);
 }
 
 TEST(Outputs, OnDevicesMayBeInputsToo) {

@@ -25,7 +25,10 @@ bool are_one(const fs::path& a, const fs::path& b) {
   };
   if (is_device(a)) return false;
   if (fs::equivalent(a, b, error)) return true;
-  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+  const auto place_of = [&](const fs::path& path) {
+    return fs::weakly_canonical(fs::absolute(path, error), error);
+  };
+  return place_of(a) == place_of(b);
 }
 
 std::string refuse_nan(const std::string& text) {

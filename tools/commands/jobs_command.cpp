@@ -17,6 +17,7 @@
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/storage/output_file.h"
+#include "roadbed/map/storage/output_place.h"
 #include "roadbed/tools/batch/batch_summary.h"
 #include "roadbed/tools/batch/file_patterns.h"
 #include "roadbed/tools/batch/job.h"
@@ -148,11 +149,22 @@ class KindOptions {
   std::size_t for_each_job(const std::function<void(const Json& job)>& take) const {
     const std::vector<JobAxis> all = axes();
     const std::size_t count = product_size(all);
+    refuse_inputs_as_output(all);
     for (std::size_t i = 0; i < count; ++i) take(job_at(all, i, count));
     return count;
   }
 
  private:
+  void refuse_inputs_as_output(const std::vector<JobAxis>& axes) const {
+    std::error_code error;
+    if (!std::filesystem::exists(file_, error)) return;
+    for (const JobAxis& axis : axes) {
+      for (const Json& value : axis.values) {
+        if (value.is_string()) map::refuse_input(file_, {value.get<std::string>()});
+      }
+    }
+  }
+
   static std::string example_of(const std::string& kind) {
     if (kind == "import") return "'maps/**/*.xodr' -o jobs.jsonl";
     if (kind == "validate") return "'maps/*.xodr' --outputs sarif -o jobs.jsonl";

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/files/csv.h"
@@ -208,10 +209,31 @@ double speed_of_way_mps(const std::vector<TrajectoryPoint>& rows, std::size_t i)
          (to.t_s - from.t_s);
 }
 
+// Whatever follows a drive looks at it every metre or so.
+std::optional<ImplausibleRow> too_far_apart(const std::vector<TrajectoryPoint>& rows) {
+  const auto most_m = static_cast<double>(geometry::most_steps(rows.size()));
+  double way_m = 0.0, longest_m = 0.0;
+  std::size_t longest = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const double row_m = step_m(rows[i - 1], rows[i]);
+    way_m += row_m;
+    if (row_m <= longest_m) continue;
+    longest_m = row_m;
+    longest = i;
+  }
+  if (way_m <= most_m) return std::nullopt;
+  return ImplausibleRow{
+      longest, "columns x_m, y_m",
+      fmt::format("{:.6g} m from the row before, in a drive of {:.6g} m", longest_m, way_m),
+      fmt::format("at most {:.6g} m in {} rows", most_m, rows.size()),
+      "remove the outlier, or give more rows between"};
+}
+
 // Degrees turn by impossible steps as well, and are the better word for it.
 std::optional<ImplausibleRow> implausible_row(const std::vector<TrajectoryPoint>& rows) {
   if (auto degrees = headings_in_degrees(rows)) return degrees;
-  return impossible_step(rows);
+  if (auto step = impossible_step(rows)) return step;
+  return too_far_apart(rows);
 }
 
 std::optional<ImplausibleRow> impossible_step(const std::vector<TrajectoryPoint>& rows) {

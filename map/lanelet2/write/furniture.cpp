@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
+#include <string>
 #include <utility>
 
 #include "roadbed/map/lanelet2/write/lanelet_map.h"
@@ -38,7 +40,13 @@ class FurnitureMaker {
         from_lanelet2_(is_from_lanelet2(road_map)),
         made_(made),
         osm_(made.osm),
-        stop_lines_(road_map.stop_lines().size()) {}
+        stop_lines_(road_map.stop_lines().size()) {
+    for (std::size_t i = 0; i < stop_lines_.size(); ++i) {
+      for (const std::string& signal : road_map.stop_lines()[i].signals) {
+        first_line_of_.emplace(signal, i);
+      }
+    }
+  }
 
   void make(const LaneletChoices& choices) {
     if (from_lanelet2_) {
@@ -112,11 +120,9 @@ class FurnitureMaker {
     const std::uint32_t light = add_line(face(signal), std::move(tags), signal.source_id);
     made_.lines.emplace(signal.source_id, light);
     std::vector<OsmMember> members{{MemberKind::way, light, "refers"}};
-    for (std::size_t i = 0; i < road_map_.stop_lines().size(); ++i) {
-      const auto& signals = road_map_.stop_lines()[i].signals;
-      if (std::find(signals.begin(), signals.end(), signal.source_id) == signals.end()) continue;
-      members.push_back({MemberKind::way, stop_line(i), "ref_line"});
-      break;  // an element has one line
+    const auto line = first_line_of_.find(signal.source_id);  // an element has one line
+    if (line != first_line_of_.end()) {
+      members.push_back({MemberKind::way, stop_line(line->second), "ref_line"});
     }
     give(osm_.add_relation(std::move(members),
                            {{"type", "regulatory_element"}, {"subtype", "traffic_light"}}),
@@ -194,6 +200,7 @@ class FurnitureMaker {
   LaneletMap& made_;
   OsmMap& osm_;
   std::vector<std::optional<std::uint32_t>> stop_lines_;
+  std::map<std::string, std::size_t> first_line_of_;  // by the signal's id
 };
 
 }  // namespace

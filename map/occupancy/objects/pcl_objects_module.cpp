@@ -3,6 +3,7 @@
 #include "roadbed/map/occupancy/objects/pcl_objects.h"
 
 #include <pcl/ModelCoefficients.h>
+#include <pcl/console/print.h>
 #include <pcl/features/normal_3d.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
@@ -35,6 +36,7 @@ pcl::search::KdTree<pcl::PointXYZ>::Ptr tree_of(const Cloud::ConstPtr& cloud) {
 }  // namespace
 
 bool roadbed_pcl_plane(const float* xyz, std::size_t count, float slope, float near, float* plane) {
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // none found is an answer
   pcl::SACSegmentation<pcl::PointXYZ> segmentation;  // by a random sequence that is always the same
   segmentation.setInputCloud(cloud_of(xyz, count));
   segmentation.setModelType(pcl::SACMODEL_PERPENDICULAR_PLANE);

@@ -75,6 +75,19 @@ TEST(ProjectionFault, IsNoneOfEachWayToNameASystem) {
   EXPECT_EQ(projection_fault(well_known_text("EPSG:25832")), "");
 }
 
+// A map is read by who does not trust it: PROJ would open any path, and wait at a pipe.
+TEST(ProjectionFault, IsAFileThatASystemNames) {
+  for (const char* crs :
+       {"+proj=utm +zone=32 +ellps=GRS80 +nadgrids=/dev/stdin", "+init=/tmp/mine:1",
+        "+proj=pipeline +step +proj=vgridshift +grids=../grid.gtx",
+        "+proj=longlat\t+nadgrids=@null,a/b",
+        "BOUNDCRS[METHOD[\"x\"],PARAMETERFILE[\"f\",\"g.gsb\"]]",
+        "{\"type\":\"BoundCRS\",\"filename\":\"g.gsb\"}"}) {
+    EXPECT_EQ(projection_fault(crs), "it names a file, which no coordinate system may") << crs;
+  }
+  EXPECT_EQ(projection_fault("+proj=utm +zone=32 +ellps=GRS80 +nadgrids=@null"), "");
+}
+
 TEST(WellKnownText, NamesTheProjection) {
   const std::string wkt = well_known_text("EPSG:25832");
   EXPECT_EQ(wkt.substr(0, 6), "PROJCS");

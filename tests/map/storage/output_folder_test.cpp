@@ -160,6 +160,16 @@ TEST(OutputFolder, IsNotPutInThePlaceOfWhatOthersMadeMeanwhile) {
   }
 }
 
+TEST(OutputFolder, ReplacesNothingWhereAFolderHasTheNameOfAFile) {
+  const tests::TemporaryFolder around;
+  const fs::path place = around / "drive";
+  write_all(place, "old", false);
+  fs::remove(place / "4");
+  fs::create_directory(place / "4");
+  EXPECT_THROW(write_all(place, "new", true), OutputError);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(tests::bytes_of(place / std::to_string(i)), "old");
+}
+
 TEST(OutputFolder, NeverReplacesAnInput) {
   const tests::TemporaryFolder around;
   const fs::path place = around / "drive";

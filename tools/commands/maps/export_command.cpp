@@ -121,7 +121,7 @@ class ExportCommand : public Command {
     const Written written = is_own_document(format, road_map)
                                 ? source_itself(format)
                                 : write(format, road_map, std::move(page));
-    map::write_output_parts(output_, written.parts, force_);
+    map::write_output_parts(output_, written.parts, force_, common.input_files);
     if (json_) print_json(streams.out, format, road_map, written);
     if (!common.quiet) print_text(streams.err, road_map, written);
     return Exit::ok;
