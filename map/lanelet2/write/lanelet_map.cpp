@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "roadbed/geometry/index/line_distance.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/lanelet2/centreline.h"
 #include "roadbed/map/lanelet2/write/shared_borders.h"
 
@@ -212,6 +213,14 @@ std::map<std::uint32_t, LaneId> LaneletMap::lanes_by_relation() const {
 
 LaneletMap lanelet_map(const RoadMap& road_map, const LaneletChoices& choices) {
   LaneletMap made = LaneletMapMaker(road_map, choices).make();
+  if (std::ranges::none_of(made.lanelets,
+                           [](const auto& lanelet) { return lanelet.has_value(); })) {
+    throw InputError({.file = "Lanelet2",
+                      .found = fmt::format("none of the map's {} lanes can be a lanelet",
+                                           road_map.lanes().size()),
+                      .needed = "a lane that somebody may use",
+                      .remedy = "export a map that has one, or to another format"});
+  }
   add_furniture(road_map, choices, made);
   return made;
 }

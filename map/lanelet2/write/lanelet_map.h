@@ -48,6 +48,7 @@ struct LaneletChoices {
 
 /// Lanes as lanelets whose borders are shared by neighbours and their end nodes by successors, with
 /// regulatory elements, signs, lights, stop lines, areas and objects.
+/// @throws InputError if no lane can be one: nobody reads a map without.
 LaneletMap lanelet_map(const RoadMap& road_map, const LaneletChoices& choices = {});
 
 /// Regulatory elements, signs, lights, stop lines, areas and objects, to lanelets that are there.

@@ -201,6 +201,12 @@ TEST(WriteLanelet2, LimitsDirectionsAndNamesAreTags) {
               tags.end());
 }
 
+TEST(WriteLanelet2, AMapWithoutALaneThatSomebodyMayUseIsRefused) {
+  tests::MadeMap made = tests::straight_two_lane_road();
+  for (std::uint32_t i = 0; i < 2; ++i) made.lane(LaneId{i}).participants = {};
+  EXPECT_THROW(written(made.build()), InputError);
+}
+
 TEST(WriteLanelet2, AMapOfUnknownPlaceIsRefused) {
   try {
     lanelet2::write_lanelet2(tests::straight_two_lane_road().build());
