@@ -71,6 +71,6 @@ std::vector<Eigen::Vector3d> outline_in_map(const RoadFrame& frame, const Object
 /// stop or give-way signs (205, 206) that speak to one of its lanes.
 std::vector<StopLine> find_stop_lines(const Document& document, std::span<const RoadFrame> frames,
                                       const BuiltLanes& built, const std::vector<Signal>& signals,
-                                      PointBudget& budget);
+                                      PointBudget& budget, std::vector<ImportDiagnostic>& remarks);
 
 }  // namespace roadbed::map::opendrive

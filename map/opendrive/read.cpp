@@ -138,7 +138,12 @@ std::vector<Regulation> build_priorities(const Document& document, const RoadMap
       }
       const std::size_t lanes =
           parts.roads[high->second].lanes.size() + parts.roads[low->second].lanes.size();
-      if (!budget.try_to_spend(PointBudget::kPerThing + 2 * lanes)) break;
+      if (!budget.try_to_spend(PointBudget::kPerThing + 2 * lanes)) {
+        remarks.push_back({"import.junction", true, "junction " + junction.id, 0,
+                           "gives priority between more lanes than a map of this size can hold; "
+                           "its priorities and those after it are left out"});
+        return regulations;
+      }
       Regulation regulation;
       regulation.source_id = junction.id;
       regulation.type = "right_of_way";
@@ -193,7 +198,7 @@ RoadMapParts read(XmlDocument xml, Document document, const LoadOptions& options
   }
   parts.signals = place_signals(document, frames, built, budget, parts.remarks);
   parts.objects = place_objects(document, frames, budget, parts.remarks);
-  parts.stop_lines = find_stop_lines(document, frames, built, parts.signals, budget);
+  parts.stop_lines = find_stop_lines(document, frames, built, parts.signals, budget, parts.remarks);
   parts.controllers = build_controllers(document);
   parts.lanes = std::move(built.lanes);
   parts.regulations = build_priorities(document, parts, budget, parts.remarks);

@@ -1,9 +1,12 @@
 #include "roadbed/map/opendrive/furniture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <string>
 
 namespace roadbed::map::opendrive {
 namespace {
@@ -48,8 +51,9 @@ std::vector<Eigen::Vector3d> longest_extent(const std::vector<Eigen::Vector3d>& 
 class StopLineFinder {
  public:
   StopLineFinder(const Document& document, std::span<const RoadFrame> frames,
-                 const BuiltLanes& built, const std::vector<Signal>& signals, PointBudget& budget)
-      : document_(document), frames_(frames), built_(built), budget_(budget) {
+                 const BuiltLanes& built, const std::vector<Signal>& signals, PointBudget& budget,
+                 std::vector<ImportDiagnostic>& remarks)
+      : document_(document), frames_(frames), built_(built), budget_(budget), remarks_(remarks) {
     for (const Signal& signal : signals) {
       const bool stops = signal.dynamic || signal.type == "205" || signal.type == "206";
       if (!stops) continue;
@@ -78,7 +82,7 @@ class StopLineFinder {
     line.source_id = record.id;
     line.in_map = longest_extent(corners(road, record));
     line.lanes = lanes(road, record.s_m, record.orientation, record.lanes, line.in_map);
-    keep(std::move(line), {});
+    keep({road, "object", record.line}, std::move(line), {});
   }
 
   std::vector<Eigen::Vector3d> corners(std::size_t road, const ObjectRecord& record) const {
@@ -101,20 +105,39 @@ class StopLineFinder {
       line.in_map.push_back(frames_[road].at(record.s_m, t_m, record.z_offset_m));
     }
     line.lanes = lanes(road, record.s_m, record.orientation, record.lanes, line.in_map);
-    keep(std::move(line), record.dependencies);
+    keep({road, "signal", 0}, std::move(line), record.dependencies);
   }
 
-  void keep(StopLine line, const std::vector<std::string>& dependencies) {
+  // Where the file has it.
+  struct Place {
+    std::size_t road;
+    const char* kind;
+    long line;
+  };
+
+  void keep(const Place& place, StopLine line, const std::vector<std::string>& dependencies) {
     if (line.in_map.size() < 2 ||
         !std::all_of(line.in_map.begin(), line.in_map.end(), is_placeable)) {
       return;  // the object or signal itself is remarked where it is placed
     }
-    if (!budget_.try_to_spend(PointBudget::kPerThing + line.lanes.size())) return;
+    std::size_t points = PointBudget::kPerThing + line.lanes.size();
+    for (const LaneId lane : line.lanes) {
+      const auto found = stopping_.find(lane);
+      if (found != stopping_.end()) points += 1 + found->second.size();
+    }
+    if (!budget_.try_to_spend(points)) {
+      remarks_.push_back({std::string("import.") + place.kind, true,
+                          fmt::format("{} {} of road {}", place.kind, line.source_id,
+                                      document_.roads[place.road].id),
+                          place.line,
+                          "is a stop line of more lanes and signals than a map of this size can "
+                          "hold; it is left out"});
+      return;
+    }
     line.signals = dependencies;
     for (const LaneId lane : line.lanes) {
       const auto found = stopping_.find(lane);
       if (found == stopping_.end()) continue;
-      if (!budget_.try_to_spend(1 + found->second.size() / 4)) return;
       for (const std::string* signal : found->second) line.signals.push_back(*signal);
     }
     std::sort(line.signals.begin(), line.signals.end());
@@ -155,6 +178,7 @@ class StopLineFinder {
   std::span<const RoadFrame> frames_;
   const BuiltLanes& built_;
   PointBudget& budget_;
+  std::vector<ImportDiagnostic>& remarks_;
   std::map<LaneId, std::vector<const std::string*>> stopping_;
   std::vector<StopLine> stop_lines_;
 };
@@ -163,8 +187,8 @@ class StopLineFinder {
 
 std::vector<StopLine> find_stop_lines(const Document& document, std::span<const RoadFrame> frames,
                                       const BuiltLanes& built, const std::vector<Signal>& signals,
-                                      PointBudget& budget) {
-  return StopLineFinder(document, frames, built, signals, budget).find();
+                                      PointBudget& budget, std::vector<ImportDiagnostic>& remarks) {
+  return StopLineFinder(document, frames, built, signals, budget, remarks).find();
 }
 
 }  // namespace roadbed::map::opendrive

@@ -87,6 +87,27 @@ TEST(OpenDriveLimits, SignalsOfMoreLanesThanAMapCanHoldAreSaid) {
               HasSubstr("speak to more lanes than a map of this size can hold"));
 }
 
+TEST(OpenDriveLimits, StopLinesOfMoreLightsThanAMapCanHoldAreSaid) {
+  constexpr int kMany = 2'000;
+  std::string lines, lights;
+  for (int i = 0; i < kMany; ++i) {
+    lines += fmt::format(
+        R"(<object id="{}" name="StopLine" s="5" t="-1" zOffset="0" length="0.3" width="3"/>)", i);
+    lights += fmt::format(
+        R"(<signal id="{}" s="5" t="0" orientation="+" type="1000001" dynamic="yes"/>)", i);
+  }
+  MadeRoad road;
+  road.lanes = made_section(0, "", made_lane(-1));
+  road.rest = "<objects>" + lines + "</objects><signals>" + lights + "</signals>";
+  const RoadMap road_map = made_map(made_road(road));
+  std::size_t pairs = 0;
+  for (const StopLine& line : road_map.stop_lines()) pairs += line.signals.size();
+  EXPECT_GT(pairs, 100'000u);
+  EXPECT_LT(pairs, 1'000'000u);
+  EXPECT_EQ(road_map.import_diagnostics().size(), kMany - pairs / kMany);
+  EXPECT_THAT(road_map.import_diagnostics().back().message, HasSubstr("it is left out"));
+}
+
 TEST(OpenDriveLimits, EmptyElementsAndLinesAreBounded) {
   tests::expect_read_in_bounds("<OpenDRIVE>" + tests::repeated(5'000'000, "<a/>") + "</OpenDRIVE>",
                                "next to nothing but empty elements");
