@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "roadbed/map/index/road_map_index.h"
 #include "roadbed/map/validation/validate.h"
 
 namespace roadbed::map::validation {
@@ -14,7 +15,8 @@ namespace {
 /// Whether a lane is within a distance; near ones are looked for first, as most things have one.
 bool near_a_lane(const RoadMap& road_map, const Eigen::Vector2d& in_map, double distance_m) {
   for (const double fraction : {0.1, 0.3, 1.0}) {
-    if (!road_map.locate(in_map, fraction * distance_m, false).empty()) return true;
+    const LaneQuery nearest{.radius_m = fraction * distance_m, .count = 1};
+    if (!road_map.index().lanes.near(in_map, nearest).empty()) return true;
   }
   return false;
 }
