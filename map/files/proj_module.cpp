@@ -5,6 +5,7 @@
 #include <proj_experimental.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -78,16 +79,22 @@ Made of_code(const std::string& authority, const std::string& code) {
   return {std::move(object), {}};
 }
 
-/// Whether a system has PROJ open a file by its path: "+nadgrids=/dev/stdin". Grids that PROJ has
-/// itself go by their names alone.
+/// Whether a system has PROJ open a file by its path: "+nadgrids=/dev/stdin", or a quoted one in
+/// well-known text or JSON. Grids that PROJ has itself go by their names alone.
 bool names_a_path(const std::string& crs) {
-  for (std::size_t at = crs.find('/'); at != std::string::npos; at = crs.find('/', at + 1)) {
-    const std::size_t start = crs.find_last_of(" \t\r\n\"", at);
-    const std::string_view word(&crs[start + 1],
-                                at - (start + 1));  // also behind npos, which is -1
-    if (word.find('=') != word.npos) return true;
+  bool is_value = false;
+  char before = ' ';
+  for (const char c : crs) {
+    const bool starts = std::string_view("\"\x9c@.~").find(before) != std::string_view::npos;
+    if (c == '/' && (is_value || starts)) return true;
+    if (c == '=') is_value = true;
+    if (std::isspace(static_cast<unsigned char>(c)) != 0 || (c == '"' && before != '=')) {
+      is_value = false;
+    }
+    before = c;
   }
-  return crs.find("PARAMETERFILE") != crs.npos || crs.find("\"filename\"") != crs.npos;
+  const bool is_json = crs.find_first_not_of(" \t\r\n") == crs.find('{');
+  return is_json && (crs.find('\\') != crs.npos || crs.find("\"filename\"") != crs.npos);
 }
 
 /// PROJ takes any other text for a name and looks for one like it: "WGS" would be WGS 72.

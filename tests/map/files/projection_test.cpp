@@ -77,12 +77,15 @@ TEST(ProjectionFault, IsNoneOfEachWayToNameASystem) {
 
 // A map is read by who does not trust it: PROJ would open any path, and wait at a pipe.
 TEST(ProjectionFault, IsAFileThatASystemNames) {
-  for (const char* crs :
-       {"+proj=utm +zone=32 +ellps=GRS80 +nadgrids=/dev/stdin", "+init=/tmp/mine:1",
-        "+proj=pipeline +step +proj=vgridshift +grids=../grid.gtx",
-        "+proj=longlat\t+nadgrids=@null,a/b",
-        "BOUNDCRS[METHOD[\"x\"],PARAMETERFILE[\"f\",\"g.gsb\"]]",
-        "{\"type\":\"BoundCRS\",\"filename\":\"g.gsb\"}"}) {
+  const std::string file = "PROJCS[\"a\",EXTENSION[\"PROJ4_GRIDS\",";
+  for (const std::string& crs : std::vector<std::string>{
+           "+proj=utm +zone=32 +ellps=GRS80 +nadgrids=/dev/stdin", "+init=/tmp/mine:1",
+           "+proj=pipeline +step +proj=vgridshift +grids=../grid.gtx",
+           "+proj=longlat\t+nadgrids=@null,a/b", "+proj=longlat +nadgrids=\"/dev/stdin\"",
+           "PROJCS[\"a\",EXTENSION[\"PROJ4\",\"+proj=longlat +nadgrids=/dev/stdin\"]]",
+           file + "\"/dev/stdin\"]]", file + "\"a/../../b\"]]",
+           file + "\xe2\x80\x9c/dev/stdin\xe2\x80\x9d]]", " {\"filename\":\"g.gsb\"}",
+           "{\"file\\u006eame\":\"g.gsb\"}"}) {
     EXPECT_EQ(projection_fault(crs), "it names a file, which no coordinate system may") << crs;
   }
   EXPECT_EQ(projection_fault("+proj=utm +zone=32 +ellps=GRS80 +nadgrids=@null"), "");
