@@ -171,10 +171,11 @@ OverlapsByPair overlaps_of(const LaneGraph& graph, const std::vector<LanePiece>&
       if (other.lane <= one.lane || !is_asked(one.lane, other.lane)) return;
       if (!are_apart(graph, one.lane, other.lane)) return;
       if (std::abs(one.z_m - other.z_m) > headroom_m) return;
-      if (!kept.spend(kStepsOfPair)) {
+      const auto [pair, is_new] = overlaps.try_emplace({one.lane, other.lane});
+      if (is_new && !kept.spend(kStepsOfPair)) {
         refuse_crowded("conflicts", "so many lanes lie over each other");
       }
-      add_overlaps(one, other, overlaps[{one.lane, other.lane}]);
+      add_overlaps(one, other, pair->second);
     });
   }
   return overlaps;

@@ -44,6 +44,7 @@ struct ConflictOptions {
 /// cross-sections sweep, from border to border at equal stations; the overlap of two strips is
 /// clipped piece by piece, so its stations are exact up to rounding.
 /// O((N + K) log N) for N vertices and K pairs of pieces that meet.
+/// @throws InputError where far too many lanes lie over each other.
 std::vector<Conflict> find_conflicts(const RoadMap& road_map, const ConflictOptions& options = {});
 
 /// Those of one lane, on either side: looks at the lanes near it only. Areas may differ from those

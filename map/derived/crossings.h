@@ -13,6 +13,7 @@ namespace roadbed::map::inline derived {
 /// then its index; else an intersection to whose incoming lanes the lane is a successor
 /// (CommonRoad); else all lanes that turn, as Lanelet2 says it, and lie over each other.
 /// @param counts  by LaneId: whether a lane that only turns is looked at.
+/// @throws InputError where far too many lanes that turn lie over each other.
 std::vector<std::optional<std::uint32_t>> crossings_of_lanes(const RoadMap& road_map,
                                                              const std::vector<bool>& counts);
 

@@ -13,7 +13,6 @@
 
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/geometry/primitives/angle.h"
-#include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/derived/rule_index.h"
 #include "roadbed/map/elements/side.h"
 #include "roadbed/planning/rules/speed_limit.h"
@@ -37,7 +36,6 @@ struct Moment {
   Vector2d axle, front, rear;     // in coordinates of the map
   std::optional<double> way_rad;  // in which the axle moves; none: it stands
   double speed_mps = 0.0;
-  bool is_after_jump = false;  // from the moment before it, too far to be followed
 };
 
 bool has_speeds(const geometry::Trajectory& drive) {
@@ -54,8 +52,7 @@ Moment moment_of(const map::RoadMap& road_map, const TrajectoryPoint& state,
           .front = axle + body.front_m * ahead,
           .rear = axle + body.rear_m * ahead,
           .way_rad = std::nullopt,
-          .speed_mps = std::abs(state.speed_mps),
-          .is_after_jump = false};
+          .speed_mps = std::abs(state.speed_mps)};
 }
 
 std::vector<Moment> moments_of(const map::RoadMap& road_map, const geometry::Trajectory& drive,
@@ -64,7 +61,6 @@ std::vector<Moment> moments_of(const map::RoadMap& road_map, const geometry::Tra
   if (samples.empty())
     throw std::invalid_argument("rules: the drive needs at least 1 point, got 0");
   const bool tells_speed = has_speeds(drive);
-  auto left = static_cast<double>(geometry::most_steps(samples.size()));
   std::vector<Moment> moments{moment_of(road_map, samples.front(), body)};
   std::size_t last = 0;  // row of the last moment
   for (std::size_t i = 1; i < samples.size(); ++i) {
@@ -78,12 +74,6 @@ std::vector<Moment> moments_of(const map::RoadMap& road_map, const geometry::Tra
     const double way_m = way.norm();
     if (way_m < kApart_m && i + 1 < samples.size()) continue;
     const double steps = std::max(1.0, std::ceil(row_m / kApart_m));
-    if (steps > left) {
-      moments.emplace_back(moment_of(road_map, b, body)).is_after_jump = true;
-      last = i;
-      continue;
-    }
-    left -= steps;
     for (double step = 1.0; step <= steps; ++step) {
       Moment& next = moments.emplace_back(
           moment_of(road_map, geometry::interpolate(a, b, step / steps), body));
@@ -170,13 +160,7 @@ class RuleAudit {
     return std::abs(geometry::wrap_angle(heading_rad - match.heading_rad)) < most_rad;
   }
 
-  RuleReport judged(RuleReport report) const {
-    for (std::size_t i = 1; i < moments_.size(); ++i) {
-      if (!moments_[i].is_after_jump) continue;
-      report.unknown.push_back({previous_s(i), moments_[i].state.t_s});
-      if (report.reason.empty()) report.reason = "rows of the drive are too far apart";
-    }
-    std::ranges::sort(report.unknown, {}, &Stretch::from_s);
+  static RuleReport judged(RuleReport report) {
     report.unknown = joined(std::move(report.unknown));
     report.verdict = !report.violations.empty() ? Verdict::conflict
                      : report.unknown.empty()   ? Verdict::clear
@@ -399,7 +383,6 @@ class RuleAudit {
       }
       return std::nullopt;
     };
-    if (moments_[i].is_after_jump) return false;
     const std::optional<double> before_m = station(i - 1), now_m = station(i);
     if (!before_m || *before_m >= s_m) return false;
     if (now_m) return *now_m >= s_m;

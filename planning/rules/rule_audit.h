@@ -39,7 +39,7 @@ struct RuleReport {
   TrafficRule rule = TrafficRule::markings;
   Verdict verdict = Verdict::clear;  ///< conflict, unknown or clear
   std::vector<Violation> violations;
-  std::vector<Stretch> unknown;  ///< the map does not say what holds, or the drive where it was
+  std::vector<Stretch> unknown;  ///< the map does not say what holds
   std::string reason = {};       ///< of what is unknown
 };
 

@@ -15,6 +15,7 @@
 
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/storage/output_file.h"
+#include "roadbed/map/storage/output_place.h"
 
 namespace roadbed::tools::inline batch {
 namespace {
@@ -24,10 +25,12 @@ namespace fs = std::filesystem;
 constexpr const char* kLock = "lock";
 constexpr const char* kUnfinished = "unfinished";
 
+constexpr std::array kOwn{kLock,           kUnfinished,    "journal",    "files",        "tables",
+                          "results.jsonl", "summary.json", "index.html", "timings.jsonl"};
+
 // Whoever puts a link in place of one of these would have the batch write elsewhere.
 const fs::path& without_links(const fs::path& folder) {
-  for (const char* own : {kLock, kUnfinished, "journal", "files", "tables", "results.jsonl",
-                          "summary.json", "index.html", "timings.jsonl"}) {
+  for (const char* own : kOwn) {
     std::error_code error;
     if (!fs::is_symlink(folder / own, error)) continue;
     throw map::OutputError({.file = (folder / own).string(),
@@ -87,6 +90,10 @@ bool is_of_batch(const fs::path& folder) {
     return entry.path().filename() == kLock;
   };
   return std::ranges::all_of(fs::directory_iterator(folder, error), is_lock);
+}
+
+void refuse_own_file(const fs::path& folder, const fs::path& jobs_file) {
+  for (const char* own : kOwn) map::refuse_input(folder / own, {jobs_file});
 }
 
 FolderLock::FolderLock(const fs::path& folder)

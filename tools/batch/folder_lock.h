@@ -7,6 +7,9 @@ namespace roadbed::tools::inline batch {
 /// Whether a folder is one that batches have been at work in.
 bool is_of_batch(const std::filesystem::path& folder);
 
+/// @throws OutputError if the jobs are read from a file that a batch in the folder writes.
+void refuse_own_file(const std::filesystem::path& folder, const std::filesystem::path& jobs_file);
+
 /// Keeps a folder to one run at a time, by flock on the file `lock` in it: gone with the process,
 /// however it ends.
 class FolderLock {

@@ -10,7 +10,6 @@
 
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/storage/output_folder.h"
-#include "roadbed/map/storage/output_place.h"
 #include "roadbed/tools/batch/batch_results.h"
 #include "roadbed/tools/batch/batch_run.h"
 #include "roadbed/tools/batch/folder_lock.h"
@@ -97,9 +96,7 @@ class BatchCommand : public Command {
     }
     count_jobs(jobs_file_);  // nothing is made where there are none to read
     map::refuse_streams();   // of jobs; that of JOBS is kept
-    for (const char* own : {"results.jsonl", "summary.json", "index.html", "timings.jsonl"}) {
-      map::refuse_input(folder_ / own, {jobs_file_});
-    }
+    refuse_own_file(folder_, jobs_file_);
     if (lists_) {
       list_missing(options(common), job_kinds(), ResultStore(folder_), streams.out);
       return Exit::ok;

@@ -209,9 +209,9 @@ double speed_of_way_mps(const std::vector<TrajectoryPoint>& rows, std::size_t i)
          (to.t_s - from.t_s);
 }
 
-// Whatever follows a drive looks at it every metre or so.
 std::optional<ImplausibleRow> too_far_apart(const std::vector<TrajectoryPoint>& rows) {
-  const auto most_m = static_cast<double>(geometry::most_steps(rows.size()));
+  constexpr double looked_at_m = 0.2;  // by who follows a drive most closely, planning/rules
+  const double most_m = looked_at_m * static_cast<double>(geometry::most_steps(rows.size()));
   double way_m = 0.0, longest_m = 0.0;
   std::size_t longest = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {

@@ -39,7 +39,7 @@ struct ImplausibleRow {
 
 /// A step between rows that no vehicle makes (over 150 m/s, or turning faster than 5 rad/s, beside
 /// what noise of 1 m and 0.5 rad does), headings that fit the path driven as degrees and not as
-/// radians, or rows so far apart that they make a way of over 100 km and 500 m for each of them.
+/// radians, or rows so far apart that they make a way of over 20 km and 100 m for each of them.
 /// None: the rows may be a drive. O(rows).
 /// @param rows  before their headings are unwrapped.
 std::optional<ImplausibleRow> implausible_row(const std::vector<geometry::TrajectoryPoint>& rows);

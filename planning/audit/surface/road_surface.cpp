@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "roadbed/geometry/primitives/angle.h"
-#include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/derived/surface.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/index/road_map_index.h"
@@ -61,7 +60,6 @@ Lanes lanes_of_type(const RoadMap& road_map, const std::vector<Box>& boxes,
 }
 
 // In coordinates of the map, at most so far apart.
-// Between rows that are too far apart for the drive's size there are none.
 std::vector<geometry::Pose2> poses_along(const RoadMap& road_map, const geometry::Trajectory& drive,
                                          double apart_m) {
   std::vector<geometry::Pose2> poses;
@@ -70,14 +68,11 @@ std::vector<geometry::Pose2> poses_along(const RoadMap& road_map, const geometry
     poses.push_back({at.x(), at.y(), state.heading_rad});
   };
   const auto& samples = drive.points();
-  auto left = static_cast<double>(geometry::most_steps(samples.size()));
   take(samples.front());
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const double way_m =
         std::hypot(samples[i].x_m - samples[i - 1].x_m, samples[i].y_m - samples[i - 1].y_m);
-    const double asked = std::max(1.0, std::ceil(way_m / apart_m));
-    const double steps = asked <= left ? asked : 1.0;
-    left = std::max(0.0, left - steps);
+    const double steps = std::max(1.0, std::ceil(way_m / apart_m));
     for (double step = 1.0; step <= steps; ++step) {
       take(geometry::interpolate(samples[i - 1], samples[i], step / steps));
     }

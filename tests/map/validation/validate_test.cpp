@@ -10,6 +10,7 @@
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/validation/rule.h"
 #include "roadbed/tests/support/made_maps.h"
+#include "roadbed/tests/support/made_open_drive.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map::validation {
@@ -42,6 +43,15 @@ TEST(Validate, FindsNothingWrongWithAFaultlessRoad) {
     EXPECT_EQ(finding.severity, Severity::info) << finding.message;
     EXPECT_THAT(finding.rule, ::testing::AnyOf("link.dead-end", "link.unreachable", "crs.missing"));
   }
+}
+
+TEST(Validate, LooksAtLinesAsFineAsItIsAsked) {
+  const auto points = [](double max_error_m) {
+    const Validation judged =
+        validate_bytes(tests::curved_road_xml(), "curved.xodr", {.max_error_m = max_error_m});
+    return judged.road_map.value().lanes()[0].centre.in_map.points().size();
+  };
+  EXPECT_GT(points(1e-3), 3 * points(0.1));
 }
 
 TEST(Validate, ReportsGapsAboveTheLimitOnly) {

@@ -58,24 +58,6 @@ TEST(RuleAudit, TellsWhereTheAxleEntersTheOncomingLane) {
   EXPECT_EQ(report.violations.front().lane, "1/0/1");
 }
 
-// Two rows 20 km and 1,000 km apart: what is between them is followed only so far as it may be.
-TEST(RuleAudit, DoesNotTellWhatIsBetweenRowsThatAreTooFarApart) {
-  const tests::MadeMap made = tests::straight_two_lane_road(100.0);
-  for (const double far_m : {2e4, 1e6}) {
-    for (const TrafficRule rule : {TrafficRule::markings, TrafficRule::direction}) {
-      const RuleReport report = audited(made, rule, line(0, -1.75, far_m, -1.75));
-      const bool is_followed = far_m < 1e5;
-      EXPECT_EQ(report.verdict,
-                is_followed && rule == TrafficRule::markings ? Verdict::clear : Verdict::unknown);
-      if (rule == TrafficRule::direction) {
-        ASSERT_THAT(report.unknown, SizeIs(1));
-        EXPECT_NEAR(report.unknown[0].from_s, is_followed ? 10.0 : 0.0, 0.1);
-        EXPECT_EQ(report.unknown[0].to_s, far_m / 10.0);
-      }
-    }
-  }
-}
-
 TEST(RuleAudit, JudgesSlowDrivesByTheirWayHoweverDenseTheirRows) {
   const tests::MadeMap made = tests::straight_two_lane_road(100.0);
   const auto crawl = [](double step_m) {

@@ -24,7 +24,7 @@ std::string csv_refusal(std::string_view text) {
 TEST(TrajectoryCsv, ReadsBackEveryNumberThatItWroteBitForBit) {
   std::mt19937 random(20261121);
   std::uniform_real_distribution<double> any(-1e6, 1e6), turn(-3.0, 3.0),
-      near(-300.0, 300.0);  // rows of a drive are not far apart
+      near(-30.0, 30.0);  // rows of a drive are not far apart
   std::vector<TrajectoryPoint> points;
   for (int i = 0; i < 200; ++i) {
     points.push_back({1e5 * i, 5e5 + near(random), 4e6 + near(random), turn(random), any(random),
@@ -116,15 +116,15 @@ TEST(TrajectoryCsv, RefusesStepsThatNoVehicleMakes) {
   EXPECT_EQ(csv_refusal(header + "0,0,0,3.1\n0.1,-1,0,-3.1\n0.2,-2,0,3.1\n"), "accepted");
 }
 
-// Two rows may be 101 km apart, five rows 102.5 km in all.
+// Two rows may be 20.2 km apart, five rows 20.5 km in all.
 TEST(TrajectoryCsv, RefusesRowsThatAreTooFarApartToBeFollowed) {
   const std::string header = "t_s,x_m,y_m,heading_rad\n0,0,0,0\n";
-  EXPECT_EQ(csv_refusal(header + "1e6,100999,0,0\n"), "accepted");
-  EXPECT_THAT(csv_refusal(header + "1e6,101001,0,0\n"),
-              HasSubstr("drive.csv:3: columns x_m, y_m: 101001 m from the row before"));
-  EXPECT_THAT(csv_refusal(header + "1,1,0,0\n1e4,60001,0,0\n2e4,0,0,0\n20001,1,0,0\n"),
-              HasSubstr("drive.csv:5: columns x_m, y_m: 60001 m from the row before, in a drive of "
-                        "120003 m, needs at most 102500 m in 5 rows"));
+  EXPECT_EQ(csv_refusal(header + "1e6,20199,0,0\n"), "accepted");
+  EXPECT_THAT(csv_refusal(header + "1e6,20201,0,0\n"),
+              HasSubstr("drive.csv:3: columns x_m, y_m: 20201 m from the row before"));
+  EXPECT_THAT(csv_refusal(header + "1,1,0,0\n1e4,12001,0,0\n2e4,0,0,0\n20001,1,0,0\n"),
+              HasSubstr("drive.csv:5: columns x_m, y_m: 12001 m from the row before, in a drive of "
+                        "24003 m, needs at most 20500 m in 5 rows"));
 }
 
 // A drive along a bend, with headings as they are and in degrees.
