@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -50,10 +52,12 @@ constexpr std::array<double, kMostTerms + 1> kReciprocals = [] {
   return reciprocals;
 }();
 
-// ∫ exp(i (K t + R t²/2)) dt from 0 to 1. The integrand u has u′ = i (K + R t) u, and so the power
-// series (n + 1) c_{n+1} = i (K c_n + R c_{n−1}); for a turn of a radian it ends after 20 to 40
-// terms, of a tenth of one after 10.
-Eigen::Vector2d unit_spiral(double k, double r) {
+using Complex = std::complex<double>;
+
+// ∫ exp(i (K t + R t²/2)) dt from 0 to 1, of no more than a radian. The integrand u has
+// u′ = i (K + R t) u, and so the power series (n + 1) c_{n+1} = i (K c_n + R c_{n−1}); for a turn of
+// a radian it ends after 20 to 40 terms, of a tenth of one after 10.
+Complex short_spiral(double k, double r) {
   constexpr double kNothing = 1e-17;
   double a = 1.0, b = 0.0, last_a = 0.0, last_b = 0.0;  // c_n, c_{n−1}
   double x = 1.0, y = 0.0;
@@ -69,22 +73,65 @@ Eigen::Vector2d unit_spiral(double k, double r) {
   return {x, y};
 }
 
+// From here on the series of `far_spiral` is exact: its least term is exp(−x²/2) = 3e-18.
+constexpr std::size_t kNearTurn = 40;
+
+// The antiderivative of exp(i φ) that vanishes at infinity, at a place with φ′ = p and φ″ = r, over
+// exp(i φ): integrated by parts, again and again, where p² ≥ 2·kNearTurn·|r|.
+Complex far_spiral(double p, double r) {
+  const double q = r / (p * p);
+  Complex term(0.0, -1.0 / p), sum = 0.0;
+  for (std::size_t n = 0; n < kNearTurn && std::abs(term) > 1e-18 / std::abs(p); ++n) {
+    sum += term;
+    const double factor = static_cast<double>(2 * n + 1) * q;
+    term = {factor * term.imag(), -factor * term.real()};
+  }
+  return sum;
+}
+
+// The spiral that all others are parts of, ∫ exp(i u²/2) du from 0 to x (DLMF 7.2(iii)): after each
+// whole radian from a table, and a short one beyond it.
+Complex whole_spiral(double x) {
+  const auto from_node = [](double node, double to) {
+    const double step = to - node;
+    return step * std::polar(1.0, 0.5 * node * node) * short_spiral(node * step, step * step);
+  };
+  const auto node = [](std::size_t turn) { return std::sqrt(2.0 * static_cast<double>(turn)); };
+  static const std::array<Complex, kNearTurn> at_nodes = [&] {
+    std::array<Complex, kNearTurn> at{};
+    for (std::size_t i = 1; i < kNearTurn; ++i) at[i] = at[i - 1] + from_node(node(i - 1), node(i));
+    return at;
+  }();
+  const double turn = 0.5 * x * x;
+  Complex value;
+  if (turn < static_cast<double>(kNearTurn)) {
+    const auto whole_turn = static_cast<std::size_t>(turn);
+    value = at_nodes[whole_turn] + from_node(node(whole_turn), std::abs(x));
+  } else {
+    const double limit = 0.5 * std::sqrt(std::numbers::pi);
+    value = Complex(limit, limit) + std::polar(1.0, turn) * far_spiral(std::abs(x), 1.0);
+  }
+  return x < 0.0 ? -value : value;
+}
+
+// ∫ exp(i (K t + R t²/2)) dt from 0 to 1 in constant time.
+Complex unit_spiral(double k, double r) {
+  const double end = k + r;
+  if (std::max(std::abs(k), std::abs(end)) <= 1.0) return short_spiral(k, r);
+  const double nearest = std::min(std::abs(k), std::abs(end));
+  if (k * end > 0.0 && nearest * nearest >= 2.0 * kNearTurn * std::abs(r)) {
+    return std::polar(1.0, k + 0.5 * r) * far_spiral(end, r) - far_spiral(k, r);
+  }
+  const double root = std::sqrt(std::abs(r)), sign = r < 0.0 ? -1.0 : 1.0;
+  const Complex part = (whole_spiral(sign * end / root) - whole_spiral(sign * k / root)) / root;
+  return std::polar(1.0, -0.5 * k * k / r) * (r < 0.0 ? std::conj(part) : part);
+}
+
 PlanPoint point_on(const SpiralCurve& spiral, double ds, double length_m) {
   const double k0 = spiral.start_curvature_per_m;
   const double rate = (spiral.end_curvature_per_m - k0) / length_m;
-  const auto heading = [&](double s) { return s * (k0 + 0.5 * rate * s); };
-  const double turning = std::abs(ds) * std::max(std::abs(k0), std::abs(k0 + rate * ds));
-  // Also of endless turning, or none that is a number.
-  const int parts = static_cast<int>(std::fmin(std::fmax(std::ceil(turning), 1.0), 1e5));
-  const double step = ds / parts;
-  Eigen::Vector2d at = step * unit_spiral(k0 * step, rate * step * step);
-  for (int i = 1; i < parts; ++i) {
-    const double from = step * i;
-    const Eigen::Vector2d part = step * unit_spiral((k0 + rate * from) * step, rate * step * step);
-    const double c = std::cos(heading(from)), s = std::sin(heading(from));
-    at += Eigen::Vector2d(c * part.x() - s * part.y(), s * part.x() + c * part.y());
-  }
-  return {{at.x(), at.y(), heading(ds)}, k0 + rate * ds};
+  const Complex at = ds * unit_spiral(k0 * ds, rate * ds * ds);
+  return {{at.real(), at.imag(), ds * (k0 + 0.5 * rate * ds)}, k0 + rate * ds};
 }
 
 // u at arc length ds of v(u): Newton on the length, which is integrated piecewise.

@@ -21,7 +21,7 @@ namespace {
 using namespace roadbed::map;
 
 void read_again(const std::string& bytes, const std::string& name) {
-  parse_map(bytes, name, {.max_error_m = 0.1});
+  parse_map(bytes, name, {.max_error_m = 1.0});
 }
 
 void put_together_twice(const std::string& bytes) {

@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace roadbed::map;
   try {
     const std::string bytes(reinterpret_cast<const char*>(data), size);
-    const RoadMap road_map = parse_map(bytes, "fuzz", {.max_error_m = 0.1});
+    const RoadMap road_map = parse_map(bytes, "fuzz", {.max_error_m = 1.0});
     if (size % 4 == 0 && road_map.format() == "Lanelet2") {
       parse_map(
           lanelet2::write_lanelet2(road_map, {.crs = "EPSG:32632", .offset_in_crs = {}}).bytes,

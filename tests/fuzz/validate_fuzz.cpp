@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using roadbed::map::validation::Profile;
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   roadbed::map::validation::ValidateOptions options;
-  options.max_error_m = 0.1;  // coarse lines are sooner judged
+  options.max_error_m = 1.0;  // coarse lines are sooner judged
   options.choice.profile = size % 2 == 0 ? Profile::planning : Profile::autoware;
   try {
     roadbed::map::validate_bytes(bytes, "fuzz", options);

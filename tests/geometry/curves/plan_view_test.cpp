@@ -10,8 +10,7 @@ namespace roadbed::geometry {
 namespace {
 
 // x = ∫ cos θ, y = ∫ sin θ with θ = k s + r s²/2, by Simpson in long double.
-Pose2 integrate_heading(double k, double rate, double length_m) {
-  const int n = 4000;
+Pose2 integrate_heading(double k, double rate, double length_m, int n = 4000) {
   long double x = 0, y = 0;
   for (int i = 0; i <= n; ++i) {
     const long double s = static_cast<long double>(length_m) * i / n;
@@ -40,6 +39,20 @@ TEST(PlanView, SpiralsAndArcsAreTheIntegralOfTheirHeading) {
     EXPECT_NEAR(spiral.heading_rad, expected.heading_rad, 1e-12);
     const Pose2 arc = single(ArcCurve{k0}, length_m).at(length_m).pose;
     EXPECT_NEAR((arc.position() - integrate_heading(k0, 0, length_m).position()).norm(), 0, 1e-10);
+  }
+}
+
+// Turning to and fro, or hardly less at one end than at the other, forwards and back.
+TEST(PlanView, SpiralsOfManyTurnsAreTheIntegralOfTheirHeading) {
+  std::mt19937 random(20261201);
+  std::uniform_real_distribution<double> curvature(-2.0, 2.0), exponent(-9.0, 0.5);
+  for (int i = 0; i < 300; ++i) {
+    const double k0 = curvature(random);
+    const double k1 = k0 + std::copysign(std::pow(10.0, exponent(random)), curvature(random));
+    const double s_m = i % 3 == 0 ? -20.0 : 40.0;
+    const Pose2 spiral = plan_point({0.0, 40.0, {}, SpiralCurve{k0, k1}}, s_m).pose;
+    const Pose2 expected = integrate_heading(k0, (k1 - k0) / 40.0, s_m, 60'000);
+    EXPECT_NEAR((spiral.position() - expected.position()).norm(), 0.0, 1e-11) << k0 << ' ' << k1;
   }
 }
 
