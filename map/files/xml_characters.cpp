@@ -206,9 +206,8 @@ std::string without_controls(std::string bytes) {
   std::string text;
   text.reserve(bytes.size());
   for (std::size_t i = 0; i < bytes.size(); ++i) {
-    const Reference reference = bytes[i] == '&'
-                                    ? control_reference(std::string_view(bytes).substr(i))
-                                    : Reference{};
+    const Reference reference =
+        bytes[i] == '&' ? control_reference(std::string_view(bytes).substr(i)) : Reference{};
     if (reference.size > 0) {
       text += one_line(std::string(1, reference.control));
       i += reference.size - 1;
