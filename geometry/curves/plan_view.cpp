@@ -55,8 +55,8 @@ constexpr std::array<double, kMostTerms + 1> kReciprocals = [] {
 using Complex = std::complex<double>;
 
 // ∫ exp(i (K t + R t²/2)) dt from 0 to 1, of no more than a radian. The integrand u has
-// u′ = i (K + R t) u, and so the power series (n + 1) c_{n+1} = i (K c_n + R c_{n−1}); for a turn of
-// a radian it ends after 20 to 40 terms, of a tenth of one after 10.
+// u′ = i (K + R t) u, and so the power series (n + 1) c_{n+1} = i (K c_n + R c_{n−1}); for a turn
+// of a radian it ends after 20 to 40 terms, of a tenth of one after 10.
 Complex short_spiral(double k, double r) {
   constexpr double kNothing = 1e-17;
   double a = 1.0, b = 0.0, last_a = 0.0, last_b = 0.0;  // c_n, c_{n−1}

@@ -105,6 +105,7 @@ GROUND: Commands = [
     for map_file in (TOWN_XODR, TOWN_OSM)
 ]
 TILES: Commands = [("map tile", ["map", "tile", "IN", "500", "-o", "tiles", "--force"])]
+NARROW_TILES: Commands = [("map tile", ["map", "tile", "IN", "5", "-o", "tiles", "--force"])]
 SCENARIO: Commands = [("simulate", ["simulate", "IN", "-o", "out", "--force"])]
 TOWN = ["--occupancy", str(DATA / "town.bt"), "--unknown", "free", "--certificate", "out.json"]
 AUDIT: Commands = [
@@ -282,6 +283,7 @@ CASES = [
     Case("pairs to align by", inputs.pairs_to_align, 1000, ALIGN),
     Case("ground of a map", inputs.ground, 40_000, GROUND),
     Case("tiles of roads", inputs.roads_apart, 100, TILES),
+    Case("tiles of a road", inputs.sections_of_a_road, 100, NARROW_TILES),
     Case("tiles of lanelets", inputs.lanelets_in_a_row, 100, TILES),
     Case("tiles of CommonRoad", inputs.cr_lanelets_in_a_row, 100, TILES),
     Case("job lines", inputs.job_lines, 100, BATCH),

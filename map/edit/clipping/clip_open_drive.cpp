@@ -15,6 +15,7 @@
 #include "roadbed/map/edit/road_cut.h"
 #include "roadbed/map/edit/road_references.h"
 #include "roadbed/map/edit/xml_edit.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/opendrive/read.h"
 
 namespace roadbed::map::inline edit::inline clipping {
@@ -142,6 +143,12 @@ Edited clip_part(const OpenDriveMap& map, pugi::xml_node part,
   return result;
 }
 
+std::size_t elements_of(pugi::xml_node node) {
+  std::size_t count = 1;
+  for (const pugi::xml_node child : node.children()) count += elements_of(child);
+  return count;
+}
+
 /// Gives each region a copy of the map without the roads that are far away.
 class PartCopier {
  public:
@@ -149,10 +156,17 @@ class PartCopier {
     std::vector<geometry::Box> boxes;
     for (const opendrive::RoadRecord& road : map.document.roads) {
       boxes.push_back(box_around(road, map.document.origin_in_source));
-      roads_.insert(road.node);
+      roads_.emplace(road.node, elements_of(road.node));
+      elements_ += roads_.at(road.node);
     }
     if (!boxes.empty()) tree_ = geometry::BoxTree(boxes);
     for (const auto road : map.xml.root().children("road")) last_ = road;
+  }
+
+  /// Elements of all roads, and of the copy of one of them.
+  std::size_t elements() const { return elements_; }
+  std::size_t elements_of_copy(const RoadElement& road) const {
+    return roads_.at(road.record->node);
   }
 
   std::vector<RoadElement> copy(const Region& region, pugi::xml_document& part) const {
@@ -185,10 +199,22 @@ class PartCopier {
 
  private:
   const OpenDriveMap& map_;
-  std::set<pugi::xml_node> roads_;
+  std::map<pugi::xml_node, std::size_t> roads_;  // and how many elements each has
+  std::size_t elements_ = 0;
   pugi::xml_node last_;
   geometry::BoxTree tree_;  // of the document's roads
 };
+
+// A road of many lane sections that lies in many regions is looked through for each.
+void refuse_endless_cuts(std::size_t cut, std::size_t of_roads, const std::string& name) {
+  constexpr std::size_t enough = 10'000'000, for_each = 50;
+  if (cut <= enough + for_each * of_roads) return;
+  throw InputError(
+      {.file = name,
+       .found = fmt::format("roads of {} elements, {} of them in the parts so far", of_roads, cut),
+       .needed = fmt::format("at most {}, and {} for each", enough, for_each),
+       .remedy = "cut into fewer parts, or long roads into shorter ones"});
+}
 
 }  // namespace
 
@@ -203,9 +229,12 @@ Edited clip_open_drive(std::string bytes, const std::string& name, const Region&
 Clipper open_drive_clipper(std::string bytes, const std::string& name, const ClipOptions& options) {
   const auto map = std::make_shared<const OpenDriveMap>(std::move(bytes), name);
   const auto copier = std::make_shared<const PartCopier>(*map);
-  return [map, copier, options](const Region& region) {
+  std::size_t cut = 0;
+  return [map, copier, options, name, cut](const Region& region) mutable {
     pugi::xml_document part;
     const std::vector<RoadElement> roads = copier->copy(region, part);
+    for (const RoadElement& road : roads) cut += copier->elements_of_copy(road);
+    refuse_endless_cuts(cut, copier->elements(), name);
     return clip_part(*map, part.document_element(), roads, region, options);
   };
 }

@@ -231,6 +231,28 @@ TEST(MakeClipper, ClipsEachSquareAsAClipDoes) {
   }
 }
 
+// Each part goes through the whole road: many parts of a road with many sections have no end.
+TEST(ClipOpenDrive, RefusesToGoThroughALongRoadForEachOfManyParts) {
+  constexpr int sections = 2000;
+  std::string road =
+      "<OpenDRIVE><header revMajor='1' revMinor='6'/><road id='1' length='2000' junction='-1'>"
+      "<planView><geometry s='0' x='0' y='0' hdg='0' length='2000'><line/></geometry></planView>"
+      "<lanes>";
+  for (int s_m = 0; s_m < sections; ++s_m) {
+    road += fmt::format(
+        "<laneSection s='{}'><center><lane id='0' type='none'/></center><right><lane id='-1' "
+        "type='driving'><width sOffset='0' a='3' b='0' c='0' d='0'/></lane></right></laneSection>",
+        s_m);
+  }
+  const Clipper clipper = make_clipper(road + "</lanes></road></OpenDRIVE>", "long.xodr");
+  int parts = 0;
+  const auto cut_all = [&] {
+    for (; parts < sections; ++parts) clipper(box(parts, -10.0, parts + 1.0, 10.0));
+  };
+  EXPECT_THROW(cut_all(), InputError);
+  EXPECT_GT(parts, 500);
+}
+
 // Lanelets are cut across: rows stay pairs, and lie on the lanelets that they are of.
 TEST(ClipCommonRoad, LeavesPartsOfTheLanelets) {
   const std::string bytes = read_file(tests::data_folder() / "junction.xml");
