@@ -9,7 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   try {
-    roadbed::tools::parse_autoware_vehicle(bytes, "fuzz.yaml").shape.check();
+    roadbed::tools::parse_vehicle(bytes, "fuzz.yaml").shape.check();
   } catch (const roadbed::map::InputError&) {
   }
   return 0;

@@ -1,4 +1,5 @@
-// Lines of poses, a CommonRoad solution or Feather in; a drive, or InputError out.
+// Lines of poses, a CommonRoad solution or Feather in; a drive, or InputError out. Whose poses they
+// are, their size says.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -8,10 +9,12 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
+  using roadbed::tools::PoseFrame;
+  roadbed::tools::DriveOptions options;
+  if (size % 8 != 0) options.rate_hz = 10.0;
+  if (size % 4 != 0) options.pose_frame = PoseFrame{{1.0, 0.0, 0.1}, size % 4 == 1};
   try {
-    roadbed::tools::parse_drive(
-        bytes, "fuzz.txt",
-        {.topic = "", .pose_frame = roadbed::tools::PoseFrame{{1.0, 0.0, 0.1}}, .rate_hz = 10.0});
+    roadbed::tools::parse_drive(bytes, "fuzz.txt", options);
   } catch (const roadbed::map::InputError&) {
   }
   return 0;

@@ -1,26 +1,83 @@
 // Bytes in, a JSON document or InputError out: just what another parser takes, but for keys that
-// stand twice.
+// stand twice. Part by part it is the same; any value can be asked for what it may be.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/parse_json.h"
 #include "roadbed/tools/files/json.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace roadbed;
-  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  const auto plain = nlohmann::json::parse(bytes, nullptr, false);
+namespace {
+
+using namespace roadbed;
+using nlohmann::json;
+
+template <typename Ask>
+void guarded(const Ask& ask) {
   try {
-    const nlohmann::json strict = tools::parse_json_strictly(bytes, "fuzz.json");
-    if (plain.is_discarded() || plain != strict) std::abort();
-    if (nlohmann::json::parse(map::json_text(strict)) != strict) std::abort();
+    ask();
   } catch (const map::InputError&) {
-    return 0;  // refused, as it should be
+    return;  // refused, as it should be
   }
+}
+
+/// @pre at most 100 levels deep.
+void ask(const tools::JsonNode& node) {
+  guarded([&] { node.number({-1.0, 1e3}); });
+  guarded([&] { node.number_or("a", 0.0, {0.0, 9.0}); });
+  guarded([&] { node.boolean(); });
+  guarded([&] { node.name(); });
+  guarded([&] { node.one_line(); });
+  guarded([&] { node.at("a"); });
+  guarded([&] { node.check_version("job"); });
+  guarded([&] { node.check_version("noise", 2); });
+  guarded([&] { node.require_object({"a", "roadbed_job"}); });
+  guarded([&] {
+    for (const auto& [key, member] : node.members()) ask(member);
+  });
+  guarded([&] {
+    for (const tools::JsonNode& element : node.elements()) ask(element);
+  });
+}
+
+void read_in_parts(std::string_view bytes, const json& whole) {
+  json together;
+  map::parse_json_parts(bytes, "fuzz.json", {}, 1,
+                        [&](std::span<const std::string> keys, json part) {
+                          if (keys.empty()) {
+                            if (part.is_object() && together.is_object()) part.update(together);
+                            together = std::move(part);
+                          } else {
+                            together[keys.front()] = std::move(part);
+                          }
+                        });
+  if (together != whole) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  const json plain = json::parse(bytes, nullptr, false);
+  guarded([&] {
+    const json strict = tools::parse_json_strictly(bytes, "fuzz.json");
+    if (plain.is_discarded() || plain != strict) std::abort();
+    if (json::parse(map::json_text(strict)) != strict) std::abort();
+    read_in_parts(bytes, strict);
+  });
+  guarded([&] {
+    try {
+      ask({map::parse_json(bytes, "fuzz.json", {.keys_stand_once = false, .most_levels = 100}),
+           "fuzz.json"});
+    } catch (const json::exception& error) {
+      map::refuse_json(error, "fuzz.json");
+    }
+  });
   return 0;
 }

@@ -41,7 +41,7 @@ SOURCES = {
     "ply": r"map/occupancy/clouds/read_ply",
     "points_csv": r"tools/files/(points_csv|csv)",
     "route_network": r"planning/route/stored_network",
-    "scenario": r"tools/simulation/(scenario|traffic_flow)\.",
+    "scenario": r"tools/simulation/scenario\.",
     "sensor_poses": r"map/occupancy/clouds/sensor_poses",
     "tiles_index": r"map/occupancy/octree/tiles_index",
     "trajectory_csv": r"tools/files/(trajectory_csv|csv)",
@@ -53,8 +53,35 @@ SOURCES = {
     "xyz": r"map/occupancy/clouds/read_xyz",
 }
 
-#: Functions beside them that read nothing.
+#: Functions beside them that read nothing: they write, or say what was read.
 WRITERS = re.compile(r"write_|add_list|json_of|FileWriter")
+
+#: Of single targets: functions and classes that open files, whose bytes the others get, that say what
+#: was read, or that read a format that another target is there for.
+BESIDES = {
+    "autoware_vehicle": "read_vehicle read_vehicle_shape measures_text named_vehicle common_road",
+    "certificate": "file_json part_json places_json observed_json times_json conflicts_json"
+                   " add_ground add_claims add_parts text_of dumped read_certificate_json"
+                   " files_named_by_certificate verdict certified_clearance_m measured_fraction"
+                   " checked_distance_m",
+    "drive_file": "of_log drive_of_rows gaps_between gaps_note jumps_note drive_of_measured read_drive"
+                  " notes_text is_solution is_drive_table vehicle_of_solution",
+    "drive_record": "relative_name read_drive_record check_sources file_of",
+    "jobs": "hash_of hash_of_bad_line line_of line_of_bad_line line failure text_of add_file"
+            " to_string may_pass one_line program json_text",
+    "od_csv": "parse_point_table read_point_table column_of_axis check_width number",
+    "outside_plan": "PlannerProcess shape_json line_json scene_json observation_json observe seen"
+                    " outside_planner",
+    "points_csv": "parse_od_csv read_point_table",
+    "scenario": "read_scenario read_noise_json files_named_by_scenario apply_to is_random parse_seed",
+}  # fmt: skip
+
+
+def reads_nothing(name: str, function: str) -> bool:
+    """Tell whether a function, as C++ writes it, is beside the readers of a target."""
+    words = BESIDES.get(name, "-").replace(" ", "|")
+    return bool(WRITERS.search(function) or re.search(rf"::({words})(\[abi:\w+\])?(\(|<|::)", function))
+
 
 #: Other folders whose files are seeds, too.
 FOLDERS = {
