@@ -139,9 +139,13 @@ const fs::path& OutputFolder::in_the_making() {
     descriptor_ = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     const bool is_locked = descriptor_ >= 0 && lock_in_the_making(descriptor_);
     if (is_locked && is_still_there(name, descriptor_)) return true;
-    const bool is_gone = descriptor_ >= 0 || errno == ENOENT;  // who had the lock removes it
-    if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
-    if (is_gone) errno = EAGAIN;
+    const int error = descriptor_ >= 0 ? EAGAIN : errno;  // who had the lock removes it
+    if (descriptor_ >= 0) {
+      ::close(std::exchange(descriptor_, -1));
+    } else if (error != ENOENT) {
+      ::rmdir(name.c_str());
+    }
+    errno = error == ENOENT ? EAGAIN : error;
     return false;
   });
   return hidden_;
