@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+
 #include <utility>
 #include <vector>
 
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/reference/reference_line_data.h"
 #include "roadbed/planning/reference/route_curve.h"
@@ -25,10 +28,20 @@ std::vector<Corridor> corridor_along(const map::RoadMap& road_map, const RoutePa
   return corridor;
 }
 
+void refuse_too_long(const Route& route, double step_m) {
+  const double most_m = kMostSupportPoints * step_m;
+  if (route.length_m <= most_m) return;
+  throw map::InputError({.file = "route",
+                         .found = fmt::format("{:.0f} m long", route.length_m),
+                         .needed = fmt::format("at most {:.0f} m for a reference line", most_m),
+                         .remedy = "choose a nearer goal, and drive in parts"});
+}
+
 }  // namespace
 
 ReferenceLine ReferenceLine::along(const map::RoadMap& road_map, const Route& route,
                                    const ReferenceLineOptions& options) {
+  refuse_too_long(route, options.step_m);
   const RoutePath path = path_along(road_map, route,
                                     {.step_m = options.step_m,
                                      .lane_change_length_m = options.lane_change_length_m,

@@ -41,12 +41,14 @@ class ReferenceLine {
   /// Through way-points (not along a route): cubic spline, resampled, corners rounded by quintic
   /// Bézier curves (way_point_path.h), then made smooth within `max_smoothing_m`. The corridor is
   /// `half_width_m` on both sides. The goal is the last way-point.
-  /// @throws std::invalid_argument for fewer than two distinct way-points, or one not finite.
+  /// @throws std::invalid_argument for fewer than two distinct way-points, one not finite, or a way
+  ///         of more than kMostSupportPoints steps.
   static ReferenceLine through(const std::vector<Eigen::Vector2d>& way_points_in_map,
                                double half_width_m, double speed_limit_mps,
                                const ReferenceLineOptions& options = {});
 
   /// Along a route, lane changes included, from its start to `extend_m` past its goal.
+  /// @throws map::InputError for a route of more than kMostSupportPoints steps.
   static ReferenceLine along(const map::RoadMap& road_map, const Route& route,
                              const ReferenceLineOptions& options = {});
 

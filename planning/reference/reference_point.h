@@ -4,6 +4,9 @@
 
 namespace roadbed::planning::inline reference {
 
+/// Support points that a reference line may have: 75 km at steps of 0.5 m, 240 MB while it is made.
+inline constexpr double kMostSupportPoints = 150'000.0;
+
 /// The reference line at one station. Derivatives are with respect to arc length.
 struct ReferencePoint {
   double s_m = 0.0;

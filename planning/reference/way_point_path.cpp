@@ -13,6 +13,7 @@
 #include "roadbed/geometry/curves/quintic_bezier.h"
 #include "roadbed/geometry/curves/spline_curve.h"
 #include "roadbed/geometry/primitives/segment.h"
+#include "roadbed/planning/reference/reference_point.h"
 
 namespace roadbed::planning::inline reference {
 namespace {
@@ -76,7 +77,7 @@ void refuse_turning_back(const Points& points) {
 }
 
 void refuse_too_long(const Points& points, double step_m) {
-  constexpr double most_points = 1e7;
+  constexpr double most_points = 2.0 * kMostSupportPoints;  // which are twice as far apart
   double length_m = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) length_m += (points[i] - points[i - 1]).norm();
   if (length_m <= most_points * step_m) return;

@@ -133,6 +133,15 @@ CLOUD: Commands = [
 OBJECTS: Commands = [
     ("occupancy objects", ["occupancy", "objects", "IN", "-o", "objects.csv", "--force"])
 ]
+FAR_POINTS: Commands = [
+    ("occupancy build", ["occupancy", "build", "IN", "-o", "out.bt", "--force"]),
+    ("occupancy .tif", ["occupancy", "export", "out.bt", "-o", "out.tif", "--force"]),
+    ("occupancy .pgm", ["occupancy", "export", "out.bt", "-o", "out.pgm", "--force"]),
+    (
+        "occupancy objects",
+        ["occupancy", "objects", "IN", "-o", "objects.csv", "--least-points", "1", "--force"],
+    ),
+]
 LOG: Commands = [("drive info", ["drive", "info", "IN"])]
 OCTREE: Commands = CLOUD + [
     ("occupancy merge", ["occupancy", "merge", "IN", "IN", "-o", "both.bt", "--force"]),
@@ -261,6 +270,8 @@ CASES = [
     Case("outlier", inputs.outlier, 20_000, AUDIT),
     Case("rows far apart", inputs.rows_far_apart, 500, AUDIT),
     Case("movers", inputs.movers, 1000, MOVERS),
+    Case("movers that jump", inputs.movers_that_jump, 100, MOVERS),
+    Case("points far apart", inputs.points_far_apart, 30, FAR_POINTS),
     Case("areas of a drive", inputs.areas_of_a_drive, 20, AREAS),
     Case("points .xyz", inputs.xyz, 10000, CLOUD),
     Case("points .pcd", inputs.pcd_binary, 10000, CLOUD),
@@ -277,6 +288,7 @@ CASES = [
     Case("places", inputs.places, 1000, LOCATE),
     Case("pairs", inputs.pairs, 100, ROUTES),
     Case("way-points", inputs.way_points, 100, LINES),
+    Case("way-points apart", inputs.way_points_apart, 1000, LINES),
     Case("vertices of a region", inputs.region_of_many_vertices, 1000, REGION),
     Case("spikes of a region", inputs.star_region, 1000, REGION),
     Case("regions", inputs.many_regions, 40, REGION),

@@ -812,6 +812,15 @@ def movers(folder: Path, n: int) -> Path:
     )
 
 
+def movers_that_jump(folder: Path, n: int) -> Path:
+    """A box that is 500 m away in every other row."""
+    drive(folder, ((i, 100 + i, 198.2, 0) for i in range(50)))
+    rows = "".join(f"{50 * i / n:.6f},a,{200 + i % 2 * 500},300,0,4,2\n" for i in range(n))
+    return written(
+        folder / "movers.csv", "t_s,id,x_m,y_m,heading_rad,length_m,width_m\n" + rows
+    )
+
+
 # Clouds
 
 
@@ -840,6 +849,12 @@ def pcd_binary(folder: Path, n: int) -> Path:
         for _ in range(n)
     )
     return written(folder / "in.pcd", pcd_header(n, "binary") + points)
+
+
+def points_far_apart(folder: Path, n: int) -> Path:
+    """Twenty points over so many metres."""
+    rows = (f"{i * n / 20:.3f} {i * 7 % 20 * n / 20:.3f} {0.3 * (i % 7):.1f}\n" for i in range(20))
+    return written(folder / "in.xyz", "".join(rows))
 
 
 def pcd_one_place(folder: Path, n: int) -> Path:
@@ -966,6 +981,11 @@ def pairs(folder: Path, n: int) -> Path:
 def way_points(folder: Path, n: int) -> Path:
     rows = (f"{5 * i},{20 * math.sin(0.05 * i):.6f}" for i in range(n))
     return table(folder, "x_m,y_m", rows)
+
+
+def way_points_apart(folder: Path, n: int) -> Path:
+    """Three way-points, the last one so many metres away."""
+    return table(folder, "x_m,y_m", (f"{x},0" for x in (0, 50, 50 + n)))
 
 
 def region(folder: Path, rings) -> Path:

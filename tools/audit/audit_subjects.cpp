@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/logs/log.h"
 #include "roadbed/planning/audit/swept_drive.h"
+#include "roadbed/planning/obstacles/obstacle_limits.h"
 #include "roadbed/planning/obstacles/recorded_obstacles.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/route/router.h"
@@ -26,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using geometry::Pose2;
 
-constexpr double kShortestSweep_m = 0.01;
+constexpr double kShortestSweep_m = 0.01, kLongestSweep_m = 75'000.0;
 
 Pose2 in_source(const map::RoadMap& road_map, const Pose2& in_map) {
   const Eigen::Vector2d place = road_map.to_source(in_map.position());
@@ -191,6 +193,11 @@ AuditSubject AuditSubjects::lane(const map::RoadMap& road_map) const {
     refuse_subject(lane_, fmt::format("is {} m before the lane's end", length_m),
                    "a part of the lane", "choose a lower S");
   }
+  if (length_m > kLongestSweep_m) {
+    refuse_subject(lane_, fmt::format("leaves {:.0f} m of the lane", length_m),
+                   fmt::format("at most {:.0f} m", kLongestSweep_m),
+                   "audit a route along it, in parts");
+  }
   const auto pose_at = [&](double s_m) {
     return in_source(road_map, lane.pose_at(from.s_m + s_m));
   };
@@ -206,8 +213,10 @@ std::vector<ObstacleInSource> read_moving_obstacles(const std::filesystem::path&
     const std::string name = map::input_name(file);
     const map::commonroad::Scenario scenario =
         map::commonroad::parse_scenario(map::read_file(file), name);
-    return planning::recorded_boxes(
+    const std::vector<ObstacleInSource> boxes = planning::recorded_boxes(
         scenario, start_step.value_or(planning::initial_step(scenario).value_or(0)), name);
+    planning::refuse_endless_ways(std::span(boxes), name);
+    return boxes;
   }
   const std::string start = map::read_file_start(file, 4096);
   const std::size_t sign = start.find_first_not_of(" \t\r\n");

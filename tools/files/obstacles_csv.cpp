@@ -6,10 +6,15 @@
 #include <array>
 #include <iterator>
 #include <map>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include "roadbed/map/files/csv_field.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/short_number.h"
+#include "roadbed/map/files/visible_text.h"
+#include "roadbed/planning/obstacles/obstacle_limits.h"
 #include "roadbed/tools/files/csv.h"
 
 namespace roadbed::tools::inline files {
@@ -65,11 +70,12 @@ class ObstacleTable {
                     .x_m = number_in(row, places, kX),
                     .y_m = number_in(row, places, kY),
                     .heading_rad = number_in(row, places, kHeading)});
-    if (rows.size() > 1 && !(rows.back().t_s > rows[rows.size() - 2].t_s)) {
+    if (rows.size() > 1 &&
+        !(rows.back().t_s >= rows[rows.size() - 2].t_s + planning::kLeastObstacleStep_s)) {
       row.refuse("column t_s",
                  fmt::format("{} s does not come after {} s of the row before of \"{}\"",
                              rows.back().t_s, rows[rows.size() - 2].t_s, id),
-                 "increasing times of each id");
+                 "times of each id that increase, by 1 µs at least");
     }
     planning::ObstacleInSource& box = boxes_[known->second];
     box.length_m = std::max(box.length_m, number_in(row, places, kLength));
@@ -93,6 +99,16 @@ class ObstacleTable {
   std::vector<std::vector<geometry::TrajectoryPoint>> rows_;
 };
 
+// Rows of one field are those of one obstacle, whoever reads them.
+[[noreturn]] void refuse_same_field(std::string_view id, std::string_view other) {
+  throw map::InputError({.file = fmt::format("obstacle {}", map::visible_text(std::string(id))),
+                         .found = id == other ? "another has the same id"
+                                              : fmt::format("its id is written as that of {}",
+                                                            map::visible_text(std::string(other))),
+                         .needed = "an id of its own in a table",
+                         .remedy = "rename one of the two"});
+}
+
 }  // namespace
 
 std::vector<planning::ObstacleInSource> parse_obstacles_csv(std::string_view bytes,
@@ -103,6 +119,7 @@ std::vector<planning::ObstacleInSource> parse_obstacles_csv(std::string_view byt
   while (table.next_row()) gathered.add(table, places);
   std::vector<planning::ObstacleInSource> obstacles = gathered.take();
   if (obstacles.empty()) table.refuse("row", "there is none", "at least one below the header");
+  planning::refuse_endless_ways(std::span<const planning::ObstacleInSource>(obstacles), name);
   return obstacles;
 }
 
@@ -110,8 +127,12 @@ std::string write_obstacles_csv(const std::vector<planning::ObstacleInSource>& o
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "{}\n", kHeader);
+  std::map<std::string, std::string_view> id_of_field;
   for (const planning::ObstacleInSource& box : obstacles) {
-    const std::string id = map::csv_field(box.id), length = map::short_number(box.length_m),
+    const std::string id = map::csv_field(box.id);
+    const auto [other, is_new] = id_of_field.emplace(id, box.id);
+    if (!is_new) refuse_same_field(box.id, other->second);
+    const std::string length = map::short_number(box.length_m),
                       width = map::short_number(box.width_m);
     for (const auto& row : box.motion.points()) {
       fmt::format_to(out, "{},{},{},{},{},{},{}\n", map::number_within(row.t_s, 1e-9), id,

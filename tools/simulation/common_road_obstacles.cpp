@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/planning/obstacles/obstacle_limits.h"
 #include "roadbed/planning/obstacles/recorded_obstacles.h"
 #include "roadbed/planning/speed/lead.h"
 
@@ -109,6 +111,7 @@ std::vector<planning::Obstacle> obstacles_of(const map::commonroad::Scenario& fr
     }
     if (!is_dropped) obstacles.insert(obstacles.end(), pieces.begin(), pieces.end());
   }
+  planning::refuse_endless_ways(std::span<const planning::Obstacle>(obstacles), source.file);
   return obstacles;
 }
 

@@ -11,6 +11,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/planning/obstacles/obstacle_limits.h"
 #include "roadbed/tools/files/json.h"
 #include "roadbed/tools/files/vehicle_file.h"
 
@@ -60,8 +61,9 @@ ParkedObstacle parked(const JsonNode& node) {
 
 /// Times of a list must increase, or what lies between them has no meaning.
 void require_later(const JsonNode& node, double t_s, double previous_s) {
-  if (t_s > previous_s) return;
-  node.refuse(fmt::format("is {} after {}", t_s, previous_s), "a later time", "sort the list");
+  if (t_s >= previous_s + planning::kLeastObstacleStep_s) return;
+  node.refuse(fmt::format("is {} after {}", t_s, previous_s),
+              "a time that is later by 1 µs at least", "sort the list");
 }
 
 std::vector<JsonNode> not_empty(const JsonNode& list) {

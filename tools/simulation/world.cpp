@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/planning/behaviour/route_line.h"
 #include "roadbed/planning/obstacles/lanes_ahead.h"
+#include "roadbed/planning/obstacles/obstacle_limits.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/planning/speed/lead.h"
 #include "roadbed/tools/cli/place.h"
@@ -314,6 +316,8 @@ World make_world(const Scenario& scenario, const Inputs& inputs) {
     }
   }
   if (!scenario.obstacles_file.empty()) add_boxes(scenario, maker, obstacles);
+  planning::refuse_endless_ways(std::span<const Obstacle>(obstacles),
+                                map::input_name(scenario.file));
   std::shared_ptr<const map::OccupancyMap> occupancy;
   std::shared_ptr<const map::ClearanceField> field;
   if (!scenario.occupancy_files.empty()) {

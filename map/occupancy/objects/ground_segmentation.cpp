@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -15,18 +16,20 @@
 namespace roadbed::map::inline occupancy::inline objects {
 namespace {
 
-constexpr double kMostCells = 4e6;
+constexpr double kMostCells = 4e6, kEnoughCells = 400'000.0, kCellsForEachPoint = 100.0;
 
 void check_extent(const PointCloud& cloud, double cell_m) {
   const Box3 box = bounds(cloud);
   const Eigen::Vector3d extent_m = box.max_in_source - box.min_in_source;
   const double cells = (extent_m.x() / cell_m + 1.0) * (extent_m.y() / cell_m + 1.0);
-  if (cells <= kMostCells) return;
+  const double most = std::min(
+      kMostCells, kEnoughCells + kCellsForEachPoint * static_cast<double>(cloud.points.size()));
+  if (cells <= most) return;
   throw InputError(
       {.file = cloud.name,
        .element = "ground",
        .found = fmt::format("reaches over {:.0f} by {:.0f} m", extent_m.x(), extent_m.y()),
-       .needed = fmt::format("at most {:.0f} cells of {} m", kMostCells, cell_m),
+       .needed = fmt::format("at most {:.0f} cells of {} m for its points", most, cell_m),
        .remedy = "take points near the sensor (--range), or larger cells "
                  "(--ground-cell)"});
 }

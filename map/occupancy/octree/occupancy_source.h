@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -12,7 +13,7 @@
 namespace roadbed::map::inline occupancy::inline octree {
 
 /// Measured at a cell: nothing, a way through, or a thing.
-enum class CellState { unknown, free, occupied };
+enum class CellState : std::uint8_t { unknown, free, occupied };
 
 /// An axis-aligned box of occupied or free space, a leaf of the octree.
 struct OccupancyCell {

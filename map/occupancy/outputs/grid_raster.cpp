@@ -33,8 +33,9 @@ struct HeightBands {
 // fmin and fmax take NaN for what is not there yet.
 HeightBands height_bands(const OccupancySource& occupancy, const GridHeights& heights,
                          const OccupancyGrid& grid) {
-  const std::vector<float> nothing(grid.squares.size(), kNothing);
-  HeightBands bands{nothing, nothing};
+  HeightBands bands;
+  for (auto* band : {&bands.lowest_m, &bands.highest_m})
+    band->assign(grid.squares.size(), kNothing);
   const CellGrid cells(occupancy);
   for_each_part(occupancy, heights, [&](const CellBox& part, CellState state) {
     if (state != CellState::occupied) return;
@@ -47,6 +48,20 @@ HeightBands height_bands(const OccupancySource& occupancy, const GridHeights& he
     });
   });
   return bands;
+}
+
+// A square of a raster takes some 25 bytes while it is made, and two cells can be far apart.
+void check_sparse(const OccupancySource& occupancy, const GridHeights& heights,
+                  const OccupancyGrid& grid, const std::string& name) {
+  constexpr std::size_t enough = 8'000'000, for_each = 100;
+  std::size_t parts = 0;
+  for_each_part(occupancy, heights, [&](const CellBox&, CellState) { ++parts; });
+  if (grid.squares.size() <= enough + for_each * parts) return;
+  throw InputError(
+      {.file = name,
+       .found = fmt::format("{} by {} squares for {} cells", grid.columns, grid.rows, parts),
+       .needed = fmt::format("at most {}, and {} for each cell", enough, for_each),
+       .remedy = "take a part with roadbed occupancy crop, or write .pgm"});
 }
 
 void check_sides(const OccupancyGrid& grid, const std::string& name) {
@@ -74,6 +89,7 @@ Raster raster_from_above(const OccupancySource& occupancy, const GridHeights& he
                          const std::string& name) {
   const OccupancyGrid grid = grid_from_above(occupancy, heights, name);
   check_sides(grid, name);
+  check_sparse(occupancy, heights, grid, name);
   HeightBands bands = height_bands(occupancy, heights, grid);
   return {.cell_m = grid.resolution_m,
           .corner = grid.corner_in_source,

@@ -64,12 +64,27 @@ TEST(ObstaclesCsv, RefusesARowWithItsPlaceAndReason) {
   };
   expect_refused("", "boxes.csv:1: row: there is none");
   expect_refused("0,a,0,0,0,4,2\n0,a,1,0,0,4,2\n", "boxes.csv:3: column t_s");
+  expect_refused("0,a,0,0,0,4,2\n1e-7,a,1,0,0,4,2\n", "boxes.csv:3: column t_s");
+  expect_refused("0,a,0,0,0,4,2\n9,a,3e5,0,0,4,2\n", "obstacle a: moves 300000 m");
   expect_refused("0,a,0,0,0,-4,2\n", "boxes.csv:2: column length_m");
   expect_refused("0,a,nan,0,0,4,2\n", "column x_m");
   expect_refused("0,,0,0,0,4,2\n", "column id");
   expect_refused("0,a,0,0\n", "row: has 4 fields");
   EXPECT_THROW(parse_obstacles_csv("t_s,id,x_m\n0,a,1\n", "b.csv"), map::InputError);
   EXPECT_THROW(parse_obstacles_csv("", "b.csv"), map::InputError);
+}
+
+// What a spreadsheet must not take for a formula, or a terminal for a command, is written as a text
+// that may be another's id: rows of two obstacles would be those of one that moves away.
+TEST(ObstaclesCsv, AreNotWrittenWhereTwoIdsWouldBeOne) {
+  const std::string header = "t_s,id,x_m,y_m,heading_rad,length_m,width_m\n";
+  const auto written = [&](const std::string& id, const std::string& other) {
+    return write_obstacles_csv(parse_obstacles_csv(
+        header + "0," + id + ",0,0,0,4,2\n1," + other + ",9,0,0,4,2\n", "b.csv"));
+  };
+  EXPECT_THROW(written("=x", "'=x"), map::InputError);
+  EXPECT_THROW(written("\u202e", "\\u202e"), map::InputError);
+  EXPECT_EQ(written("=x", "y"), header + "0,'=x,0,0,0,4,2\n1,y,9,0,0,4,2\n");
 }
 
 TEST(ObstaclesCsv, TheTextTellsAllObstaclesApart) {

@@ -165,6 +165,8 @@ TEST(Scenario, FaultsAreReportedAtTheirPlace) {
               StartsWith("test.json:/obstacles/0/parked/x_m: is null"));
   EXPECT_THAT(message_with("/obstacles/2/scripted/1/t_s", 0),
               StartsWith("test.json:/obstacles/2/scripted/1/t_s: is 0 after 0"));
+  EXPECT_THAT(message_with("/obstacles/2/scripted/1/t_s", 5e-324),
+              StartsWith("test.json:/obstacles/2/scripted/1/t_s: is 5e-324 after 0"));
   EXPECT_THAT(message_with("/obstacles/4/traffic/speeds/1/t_s", -1),
               StartsWith("test.json:/obstacles/4/traffic/speeds/1/t_s: is -1"));
   EXPECT_THAT(message_with("/obstacles/4/traffic/speed_mps", 1),

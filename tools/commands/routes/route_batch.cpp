@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "roadbed/map/files/csv_field.h"
 #include "roadbed/map/files/in_threads.h"
@@ -24,10 +25,30 @@ struct PairRow : OdRow {
   std::optional<planning::RoutePlace> from_place, to_place;
 };
 
-struct Cell {
-  std::string csv, json;
-  bool found = false;
+/// What became of a row, or of all pairs that begin with it.
+struct RowAnswers {
+  std::string csv = {}, json = {};  ///< lines; elements of an array
+  std::size_t found = 0, none = 0;
 };
+
+// One more element of an array in a document that is indented by one space a level.
+void add_element(const std::string& json, std::string& array) {
+  array += array.empty() ? "\n  " : ",\n  ";
+  for (const char sign : json) {
+    array += sign;
+    if (sign == '\n') array += "  ";
+  }
+}
+
+void refuse_many_pairs(const std::filesystem::path& file, std::size_t rows, bool json) {
+  const std::size_t most = json ? 750'000 : 2'500'000;
+  if (rows * rows <= most) return;
+  throw map::InputError(
+      {.file = map::input_name(file),
+       .found = fmt::format("{} rows, of which a matrix has {} pairs", rows, rows * rows),
+       .needed = fmt::format("at most {} pairs{}", most, json ? " in a JSON document" : ""),
+       .remedy = json ? "write it with -o, or ask in parts" : "ask in parts"});
+}
 
 void place_row(const map::RoadMap& road_map, const planning::Router& router,
                map::Participant participant, PairRow& row) {
@@ -70,18 +91,18 @@ class Batch {
     });
   }
 
-  std::vector<Cell> answer_rows(const std::vector<PairRow>& rows) const {
-    std::vector<Cell> cells(rows.size());
+  std::vector<RowAnswers> answer_rows(const std::vector<PairRow>& rows) const {
+    std::vector<RowAnswers> answers(rows.size());
     map::in_threads(
         rows.size(), options_.threads,
         [&] {
           return Own{planning::HierarchySearch(solver_.metric()), {}};
         },
-        [&](Own& own, std::size_t i) { cells[i] = answer(own, rows[i]); });
-    return cells;
+        [&](Own& own, std::size_t i) { answers[i] = answer(own, rows[i]); });
+    return answers;
   }
 
-  std::vector<Cell> answer_matrix(const std::vector<PairRow>& rows) const {
+  std::vector<RowAnswers> answer_matrix(const std::vector<PairRow>& rows) const {
     std::vector<planning::ClimbedSpace> goals(rows.size());
     const auto make = [&] { return planning::HierarchySearch(solver_.metric()); };
     map::in_threads(
@@ -90,7 +111,7 @@ class Batch {
           const auto end = arrive_at(solver_.graph(), solver_.model(), *rows[i].to_place);
           goals[i] = search.climb(end.seeds, true);
         });
-    std::vector<Cell> cells(rows.size() * rows.size());
+    std::vector<RowAnswers> answers(rows.size());
     map::in_threads(
         rows.size(), options_.threads, make, [&](planning::HierarchySearch& search, std::size_t i) {
           if (!rows[i].fault.empty()) return;
@@ -98,11 +119,10 @@ class Batch {
           const planning::ClimbedSpace start = search.climb(end.seeds, false);
           for (std::size_t j = 0; j < rows.size(); ++j) {
             if (!rows[j].fault.empty()) continue;
-            cells[i * rows.size() + j] = matrix_cell(rows[i], rows[j], start, goals[j]);
+            add_pair(rows[i], rows[j], start, goals[j], answers[i]);
           }
         });
-    std::erase_if(cells, [](const Cell& cell) { return cell.csv.empty(); });
-    return cells;
+    return answers;
   }
 
  private:
@@ -112,7 +132,7 @@ class Batch {
     std::optional<planning::NoRouteExplainer> obstacles;
   };
 
-  Cell answer(Own& own, const PairRow& row) const {
+  RowAnswers answer(Own& own, const PairRow& row) const {
     if (!row.fault.empty()) return none(row, row.fault);
     planning::RouteTask task = solver_.task(*row.from_place, *row.to_place);
     const planning::GraphPath path = own.search.find(task.start.seeds, task.goal.seeds);
@@ -123,27 +143,26 @@ class Batch {
     for (const planning::RouteLeg& leg : route.legs) {
       lanes += (lanes.empty() ? "" : " ") + road_map_.lane(leg.lane).name;
     }
-    Cell cell;
-    cell.found = true;
+    RowAnswers cell{.csv = {}, .json = {}, .found = 1};
     cell.csv = fmt::format("{},{},{},1,{:.4f},{:.4f},{:.3f},{},{},\n", row.line,
                            map::csv_field(row.from), map::csv_field(row.to), route.cost_s,
                            route.cost_m, route.length_m, route.lane_changes, map::csv_field(lanes));
-    if (options_.json) cell.json = with_row(route_json(road_map_, route), row);
+    if (options_.json) add_with_row(route_json(road_map_, route), row, cell);
     return cell;
   }
 
-  Cell none(const PairRow& row, const std::string& reason) const {
-    Cell cell;
+  RowAnswers none(const PairRow& row, const std::string& reason) const {
+    RowAnswers cell{.csv = {}, .json = {}, .found = 0, .none = 1};
     cell.csv = fmt::format("{},{},{},0,,,,,,{}\n", row.line, map::csv_field(row.from),
                            map::csv_field(row.to), map::csv_field(reason));
-    if (options_.json) cell.json = with_row({{"found", false}, {"reason", reason}}, row);
+    if (options_.json) add_with_row({{"found", false}, {"reason", reason}}, row, cell);
     return cell;
   }
 
   // The table says that there is none, the document why.
-  Cell no_route(Own& own, const PairRow& row) const {
+  RowAnswers no_route(Own& own, const PairRow& row) const {
     const planning::RoutePlace from = *row.from_place, to = *row.to_place;
-    Cell cell =
+    RowAnswers cell =
         none(row, fmt::format("no lane sequence leads from lane {} to lane {}",
                               road_map_.lane(from.lane).name, road_map_.lane(to.lane).name));
     if (!options_.json) return cell;
@@ -151,33 +170,32 @@ class Batch {
     planning::RouteAnswer answer;
     answer.explanation = own.obstacles->find(from, to);
     answer.reason = describe(road_map_, from, to, *answer.explanation);
-    cell.json = with_row(no_route_json(road_map_, answer), row);
+    cell.json.clear();
+    add_with_row(no_route_json(road_map_, answer), row, cell);
     return cell;
   }
 
-  static std::string with_row(Json json, const PairRow& row) {
+  static void add_with_row(Json json, const PairRow& row, RowAnswers& answers) {
     json["row"] = row.line;
-    return text_of(json, 1);
+    add_element(text_of(json, 1), answers.json);
   }
 
-  Cell matrix_cell(const PairRow& from, const PairRow& to, const planning::ClimbedSpace& start,
-                   const planning::ClimbedSpace& goal) const {
+  void add_pair(const PairRow& from, const PairRow& to, const planning::ClimbedSpace& start,
+                const planning::ClimbedSpace& goal, RowAnswers& answers) const {
     planning::Ticks ticks = cost_between(start, goal);
     const auto direct = direct_way(solver_.model(), *from.from_place, *to.to_place);
     if (direct) ticks = std::min(ticks, direct->cost);
     const planning::RouteCost measure = solver_.options().cost;
     const double cost = static_cast<double>(ticks) / planning::ticks_per_unit(measure);
-    Cell cell;
-    cell.found = ticks != planning::kNever;
-    cell.csv = fmt::format("{},{},{},{},{},{}\n", from.line, to.line, map::csv_field(from.from),
-                           map::csv_field(to.to), cell.found ? 1 : 0,
-                           cell.found ? fmt::format("{:.4f}", cost) : "");
-    if (!options_.json) return cell;
-    Json json = {{"from_row", from.line}, {"to_row", to.line}, {"found", cell.found}};
-    const char* key = measure == planning::RouteCost::time ? "cost_s" : "cost_m";
-    if (cell.found) json[key] = cost;
-    cell.json = text_of(json, 1);
-    return cell;
+    const bool found = ticks != planning::kNever;
+    ++(found ? answers.found : answers.none);
+    answers.csv +=
+        fmt::format("{},{},{},{},{},{}\n", from.line, to.line, map::csv_field(from.from),
+                    map::csv_field(to.to), found ? 1 : 0, found ? fmt::format("{:.4f}", cost) : "");
+    if (!options_.json) return;
+    Json json = {{"from_row", from.line}, {"to_row", to.line}, {"found", found}};
+    if (found) json[measure == planning::RouteCost::time ? "cost_s" : "cost_m"] = cost;
+    add_element(text_of(json, 1), answers.json);
   }
 
   const map::RoadMap& road_map_;
@@ -185,15 +203,6 @@ class Batch {
   planning::Router router_;
   const planning::RouteSolver& solver_;
 };
-
-// One more element of an array in a document that is indented by one space a level.
-void add_element(const std::string& json, std::string& array) {
-  array += array.empty() ? "\n  " : ",\n  ";
-  for (const char sign : json) {
-    array += sign;
-    if (sign == '\n') array += "  ";
-  }
-}
 
 std::string header(const planning::RouteOptions& rules, bool matrix) {
   if (!matrix) return "row,from,to,found,cost_s,cost_m,length_m,lane_changes,lanes,reason\n";
@@ -206,17 +215,28 @@ std::string header(const planning::RouteOptions& rules, bool matrix) {
 BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::path& file,
                         const planning::RouteOptions& rules, const RouteBatchOptions& options) {
   std::vector<PairRow> rows = read_rows(file);
+  if (options.matrix) refuse_many_pairs(file, rows.size(), options.json);
   const Batch batch(road_map, rules, options);
   batch.place(rows);
-  const std::vector<Cell> cells =
+  std::vector<RowAnswers> answers =
       options.matrix ? batch.answer_matrix(rows) : batch.answer_rows(rows);
   BatchAnswer answer;
   answer.csv = header(rules, options.matrix);
+  std::size_t csv_bytes = answer.csv.size(), json_bytes = 100;
+  for (const RowAnswers& row : answers) {
+    csv_bytes += row.csv.size();
+    json_bytes += row.json.size() + 1;
+  }
+  answer.csv.reserve(csv_bytes);
   std::string documents;
-  for (const Cell& cell : cells) {
-    answer.csv += cell.csv;
-    if (options.json) add_element(cell.json, documents);
-    ++(cell.found ? answer.found : answer.none);
+  documents.reserve(json_bytes);
+  for (RowAnswers& of_row : answers) {  // one at a time, so that all is there once
+    const RowAnswers row = std::move(of_row);
+    answer.csv += row.csv;
+    if (!documents.empty() && !row.json.empty()) documents += ',';
+    documents += row.json;
+    answer.found += row.found;
+    answer.none += row.none;
   }
   for (const PairRow& row : rows) {
     if (row.fault.empty()) continue;
