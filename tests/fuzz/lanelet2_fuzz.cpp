@@ -13,8 +13,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace roadbed::map;
   try {
     const std::string bytes(reinterpret_cast<const char*>(data), size);
+    const Format* format = format_of(bytes);
+    if (format == nullptr || format->name != "Lanelet2") return -1;  // not worth keeping
     const RoadMap road_map = parse_map(bytes, "fuzz", {.max_error_m = 1.0});
-    if (size % 4 == 0 && road_map.format() == "Lanelet2") {
+    if (size % 4 == 0) {
       parse_map(
           lanelet2::write_lanelet2(road_map, {.crs = "EPSG:32632", .offset_in_crs = {}}).bytes,
           "written");
