@@ -30,7 +30,10 @@ std::vector<std::uint32_t> hilbert_order(const std::vector<Box>& boxes) {
 struct Open {
   double distance_m;
   std::size_t level, index;
-  bool operator<(const Open& other) const { return distance_m > other.distance_m; }
+  // Nearer ones first; where many hold the point, those that are asked themselves.
+  bool operator<(const Open& other) const {
+    return distance_m != other.distance_m ? distance_m > other.distance_m : level > other.level;
+  }
 };
 
 }  // namespace

@@ -89,6 +89,10 @@ COLUMNS: Commands = [
     ("import", ["import", "IN", "--columns", "columns.json", "-o", "in.rbm", "--force"]),
     ("route", ["route", "in.rbm", "--from", "50,0", "--to", "50,0"]),
 ]
+COLUMNS_XODR: Commands = [
+    COLUMNS[0],
+    ("export .xodr", ["export", "in.rbm", "-o", "out.xodr", "--force"]),
+]
 TOWN_XODR, TOWN_OSM = str(DATA / "town.xodr"), str(DATA / "crossing.osm")
 REGION: Commands = [
     (f"map clip {map_file[-4:]}", ["map", "clip", map_file, "--polygon", "IN", *PART])
@@ -242,6 +246,7 @@ CASES = [
     Case("CommonRoad obstacles", inputs.cr_obstacles, 100, map_commands("50,1.5")[:3] + EDIT),
     Case("lanes of a table", inputs.table_lanes_in_a_row, 100, COLUMNS),
     Case("same lanes of a table", inputs.table_same_lanes, 10, COLUMNS),
+    Case("slanting lanes of a table", inputs.table_slanting_lanes, 40, COLUMNS_XODR),
     Case("points of a table's lane", inputs.table_points_of_a_lane, 1000, COLUMNS),
     # Fewer than 10,000 lanes: from there on import adds up their areas, a step in time.
     Case("successors in a table", inputs.table_successors_of_a_lane, 50, COLUMNS),

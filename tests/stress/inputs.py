@@ -530,7 +530,10 @@ def cr_obstacles(folder: Path, n: int) -> Path:
 
 def lane_table(folder: Path, lanes) -> Path:
     """Lanes by name, successors and the points of their centre lines."""
-    columns = {"drawing": "centreline", "lane": "id", "width_m": "width", "successors": "next"}
+    lanes = list(lanes)
+    columns = {"drawing": "centreline", "lane": "id", "width_m": "width"}
+    if any(following for _, following, _ in lanes):
+        columns["successors"] = "next"
     written(folder / "columns.json", json.dumps(columns))
     return geojson(
         folder,
@@ -553,6 +556,13 @@ def table_lanes_in_a_row(folder: Path, n: int) -> Path:
 
 def table_same_lanes(folder: Path, n: int) -> Path:
     return lane_table(folder, ((str(i), "", [[0, 0], [100, 0]]) for i in range(n)))
+
+
+def table_slanting_lanes(folder: Path, n: int) -> Path:
+    """Lanes of one way, a centimetre apart."""
+    return lane_table(
+        folder, ((str(i), "", [[0.01 * (i % 7), 0], [100, 50]]) for i in range(n))
+    )
 
 
 def table_points_of_a_lane(folder: Path, n: int) -> Path:

@@ -31,9 +31,11 @@ class NearestLine {
     tree_ = geometry::BoxTree(boxes);
   }
 
-  double distance_m(const Eigen::Vector2d& point, double most_m) const {
+  /// Of so many boxes at most, which it counts down; beyond, how far it is at most.
+  double distance_m(const Eigen::Vector2d& point, double most_m, double& boxes_left) const {
     double least_m = most_m;
     tree_.nearest(point, most_m, [&](std::size_t index) {
+      if (--boxes_left < 0.0) return -1.0;  // ends the search
       double nearest_m = 1e300;
       const LineSpan& chain = chains_[index];
       for (std::size_t i = 1; i < chain.size(); ++i) {
@@ -56,7 +58,8 @@ constexpr double kStride_m = 0.5, kWorthALook_m = 0.01, kLookedAt_m = 0.002;
 /// The largest distance of a line to the nearest of all others: of places every half a metre, and
 /// where these are off by more than a centimetre between them, too, as the farthest place may be
 /// between two of the others. The one that it stands for runs beside it, mostly near enough to make
-/// any other needless.
+/// any other needless. Where so many lines lie on each other that it would look into more than 8
+/// boxes for each place, that one has to do: the distance is at most what is said.
 class LineError {
  public:
   explicit LineError(const NearestLine& others) : others_(others) {}
@@ -65,9 +68,11 @@ class LineError {
     std::size_t at = 1;
     std::optional<Place> last;
     const auto look = [&](const Eigen::Vector2d& point) {
+      constexpr double boxes = 8.0;
+      boxes_left_ += boxes;
       Place place{point, distance_beside_m(point, beside, at)};
       if (place.most_m > std::min(largest_.largest_m, kWorthALook_m)) {
-        place.most_m = others_.distance_m(point, place.most_m);
+        place.most_m = distance_m(point, place.most_m);
         note(place);
       }
       if (last && std::max(last->most_m, place.most_m) > kWorthALook_m) look_between(*last, place);
@@ -91,6 +96,10 @@ class LineError {
     double most_m;  ///< it is no farther from the others
   };
 
+  double distance_m(const Eigen::Vector2d& point, double most_m) {
+    return boxes_left_ > 0.0 ? others_.distance_m(point, most_m, boxes_left_) : most_m;
+  }
+
   void note(const Place& place) {
     if (place.most_m > largest_.largest_m) largest_ = {place.most_m, place.at};
   }
@@ -101,7 +110,8 @@ class LineError {
     const bool is_no_farther = 0.5 * (from.most_m + to.most_m + way_m) <= largest_.largest_m;
     if (way_m < kLookedAt_m || is_no_farther) return;
     const Eigen::Vector2d at = 0.5 * (from.at + to.at);
-    const Place middle{at, others_.distance_m(at, 0.5 * (from.most_m + to.most_m + way_m))};
+    if (boxes_left_ <= 0.0) return note({at, 0.5 * (from.most_m + to.most_m + way_m)});
+    const Place middle{at, distance_m(at, 0.5 * (from.most_m + to.most_m + way_m))};
     note(middle);
     look_between(from, middle);
     look_between(middle, to);
@@ -125,6 +135,7 @@ class LineError {
   }
 
   const NearestLine& others_;
+  double boxes_left_ = 4'000.0;
   BorderError largest_;
 };
 
