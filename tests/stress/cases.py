@@ -137,6 +137,7 @@ CLOUD: Commands = [
 OBJECTS: Commands = [
     ("occupancy objects", ["occupancy", "objects", "IN", "-o", "objects.csv", "--force"])
 ]
+TILES_INFO: Commands = [("occupancy info", ["occupancy", "info", "in.tiles"])]
 FAR_POINTS: Commands = [
     ("occupancy build", ["occupancy", "build", "IN", "-o", "out.bt", "--force"]),
     ("occupancy .tif", ["occupancy", "export", "out.bt", "-o", "out.tif", "--force"]),
@@ -276,6 +277,7 @@ CASES = [
     Case("rows far apart", inputs.rows_far_apart, 500, AUDIT),
     Case("movers", inputs.movers, 1000, MOVERS),
     Case("movers that jump", inputs.movers_that_jump, 100, MOVERS),
+    Case("empty parts of an index", inputs.empty_parts_of_an_index, 3000, TILES_INFO),
     Case("points far apart", inputs.points_far_apart, 30, FAR_POINTS),
     Case("areas of a drive", inputs.areas_of_a_drive, 20, AREAS),
     Case("points .xyz", inputs.xyz, 10000, CLOUD),

@@ -861,6 +861,14 @@ def pcd_binary(folder: Path, n: int) -> Path:
     return written(folder / "in.pcd", pcd_header(n, "binary") + points)
 
 
+def empty_parts_of_an_index(folder: Path, n: int) -> Path:
+    (folder / "in.tiles").mkdir(exist_ok=True)
+    return written(
+        folder / "in.tiles/index.json",
+        '{"format":"roadbed occupancy tiles 2","x":[' + ",".join(["{}"] * n) + "]}",
+    )
+
+
 def points_far_apart(folder: Path, n: int) -> Path:
     """Twenty points over so many metres."""
     rows = (f"{i * n / 20:.3f} {i * 7 % 20 * n / 20:.3f} {0.3 * (i % 7):.1f}\n" for i in range(20))

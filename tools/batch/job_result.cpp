@@ -6,9 +6,13 @@
 #include <array>
 #include <charconv>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
 #include <utility>
 
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/parse_json.h"
 #include "roadbed/map/files/visible_text.h"
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/cli/command.h"
@@ -39,18 +43,28 @@ std::string one_line(std::string text) {
 
 constexpr std::size_t kDigits = 16;  // of each part
 
-// The documents of commands are read through, but not kept.
+bool is_document(std::string_view key) {
+  return key == "result" || key == "options" || key == "inputs";
+}
+
+// The documents of commands are read through, but not kept. Null where there is no object.
 json parse_without_documents(std::string_view line) {
-  constexpr int kMember = 1;
-  const auto keep = [is_document = false](int depth, json::parse_event_t event,
-                                          json& value) mutable {
-    if (event == json::parse_event_t::key && depth == kMember) {
-      is_document = value == "result" || value == "options" || value == "inputs";
+  json head = json::object();
+  const auto take = [&](std::span<const std::string> keys, json part) {
+    if (keys.empty()) {
+      if (!part.is_object()) head = nullptr;
+    } else if (!is_document(keys.front())) {
+      head[keys.front()] = std::move(part);
     }
-    return !is_document || event == json::parse_event_t::key ||
-           (depth == 0 && event == json::parse_event_t::object_end);
   };
-  return json::parse(line, keep, false);
+  try {
+    map::parse_json_parts(line, "journal", {.keys_stand_once = false}, 1, take);
+  } catch (const json::exception&) {
+    return nullptr;
+  } catch (const map::InputError&) {  // more than a line of its size may hold
+    return nullptr;
+  }
+  return head;
 }
 
 template <typename Value, typename... Values>

@@ -10,6 +10,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/parse_json.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/visible_text.h"
 
@@ -31,33 +32,12 @@ constexpr std::int64_t kSmallestSide = 64, kLargestSide = 32768;
                     .remedy = "build the tiles again"});
 }
 
-/// Remembers the keys of every open object.
-class NoKeyTwice {
- public:
-  explicit NoKeyTwice(const std::string& name) : name_(&name) {}
-
-  bool operator()(int /*depth*/, Json::parse_event_t event, const Json& parsed) {
-    if (event == Json::parse_event_t::object_start) keys_.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys_.pop_back();
-    if (event != Json::parse_event_t::key) return true;
-    const auto& key = parsed.get_ref<const std::string&>();
-    if (!keys_.back().insert(key).second) {
-      refuse_index(*name_, "key \"" + key + "\"", "stands twice in one object", "each once");
-    }
-    return true;
-  }
-
- private:
-  const std::string* name_;
-  std::vector<std::set<std::string>> keys_;
-};
-
 Ordered json_of(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
 
 /// Takes values out of a document, and says where one is not what it should be.
 class IndexReader {
  public:
-  IndexReader(const Json& json, const std::string& name) : json_(json), name_(name) {}
+  IndexReader(Json json, const std::string& name) : json_(std::move(json)), name_(name) {}
 
   TilesIndex read() const {
     if (text(json_, "format") != kTilesFormat) {
@@ -165,7 +145,7 @@ class IndexReader {
     return point;
   }
 
-  const Json& json_;
+  const Json json_;
   const std::string& name_;
 };
 
@@ -210,9 +190,13 @@ TilesIndex parse_tiles_index(std::string_view bytes, const std::string& name) {
     refuse_index(name, "size", fmt::format("{} bytes", bytes.size()),
                  fmt::format("at most {}", most_bytes));
   }
-  const Json json = Json::parse(bytes, NoKeyTwice(name), false);
-  if (json.is_discarded()) refuse_index(name, "", "is no JSON document", "");
-  return IndexReader(json, name).read();
+  try {
+    return IndexReader(parse_json(bytes, name), name).read();
+  } catch (const Json::parse_error& error) {
+    refuse_json(error, name);
+  } catch (const Json::out_of_range& error) {
+    refuse_json(error, name);
+  }
 }
 
 std::filesystem::path tiles_index_file(const std::filesystem::path& folder) {
