@@ -127,9 +127,10 @@ def options_of(name: str) -> list[str]:
     """
     if name in SUFFIXES:
         return [f"-max_len={MOST_BYTES}", "-entropic=0"]
-    # Of a packed byte of .laz a hundred points may come; rows of a table are all alike, and so are the
-    # parts of a JSON document of no kind.
-    most_bytes = 1600 if name == "las" else 512 if name == "json" or name.endswith("_csv") else None
+    # Of a packed byte of .laz a hundred points may come; rows of a table are all alike, and so are
+    # lines of jobs and the parts of a JSON document of no kind.
+    most_bytes = {"las": 1600, "jobs": 1024, "json": 512}.get(
+        name, 512 if name.endswith("_csv") else None)  # fmt: skip
     return ["-entropic=0"] + ([f"-max_len={most_bytes}"] if most_bytes else [])
 
 
