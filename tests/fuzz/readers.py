@@ -62,8 +62,7 @@ BESIDES = {
     "autoware_vehicle": "read_vehicle read_vehicle_shape measures_text named_vehicle common_road",
     "certificate": "file_json part_json places_json observed_json times_json conflicts_json"
                    " add_ground add_claims add_parts text_of dumped read_certificate_json"
-                   " files_named_by_certificate verdict certified_clearance_m measured_fraction"
-                   " checked_distance_m",
+                   " files_named_by_certificate verdict certified_clearance_m measured_fraction",
     "drive_file": "of_log drive_of_rows gaps_between gaps_note jumps_note drive_of_measured read_drive"
                   " notes_text is_solution is_drive_table vehicle_of_solution",
     "drive_record": "relative_name read_drive_record check_sources file_of",

@@ -187,6 +187,19 @@ TEST(RouteCommand, AMatrixHoldsEveryPairAsSingleQuestionsDo) {
   }
 }
 
+TEST(RouteCommand, RefusesAMatrixOfMorePairsThanItHolds) {
+  const TemporaryFolder folder;
+  std::string rows = "from,to\n";
+  for (int i = 0; i < 900; ++i) rows += "lane:1/0/-1@10,lane:7/0/1@55\n";
+  const std::string pairs = folder.write("pairs.csv", rows);
+  const ProgramRun table =
+      run_roadbed({"route", kTown, "--batch", pairs, "--matrix", "-o", folder / "matrix.csv"});
+  EXPECT_EQ(table.status, 0) << table.err;
+  const ProgramRun document = run_roadbed({"route", kTown, "--batch", pairs, "--matrix", "--json"});
+  EXPECT_EQ(document.status, 3);
+  EXPECT_THAT(document.err, testing::HasSubstr("900 rows, of which a matrix has 810000 pairs"));
+}
+
 TEST(RouteCommand, WritesLegsAsCsvAndAPictureOfTheWay) {
   const TemporaryFolder folder;
   const std::string csv = folder / "way.csv", svg = folder / "way.svg";

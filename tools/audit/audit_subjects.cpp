@@ -28,7 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 using geometry::Pose2;
 
-constexpr double kShortestSweep_m = 0.01, kLongestSweep_m = 75'000.0;
+constexpr double kShortestSweep_m = 0.01;
+constexpr double kLongestSweep_m = planning::kMostSupportPoints * 0.5;  // as a route's line
 
 Pose2 in_source(const map::RoadMap& road_map, const Pose2& in_map) {
   const Eigen::Vector2d place = road_map.to_source(in_map.position());

@@ -122,7 +122,7 @@ Course through_way_points(const Scenario& scenario, const map::RoadMap& road_map
     return {{}, std::move(line)};
   } catch (const std::invalid_argument& unusable) {
     refuse(scenario, "/way_points", fmt::format("make no line: {}", unusable.what()),
-           "give distinct points, on a way that does not turn back on itself");
+           "give distinct points, on a way of 75 km at most that does not turn back on itself");
   }
 }
 

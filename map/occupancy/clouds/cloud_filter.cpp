@@ -58,6 +58,22 @@ void take_scans(PointCloud& cloud, const std::vector<std::uint32_t>& nearest) {
   cloud.scans = std::move(scans);
 }
 
+// PCL counts voxels in 32 bits, and leaves all points where they are too many.
+void check_voxels(const PointCloud& cloud, double voxel_m) {
+  if (!(voxel_m > 0.0)) return;
+  const Box3 box = bounds(cloud);
+  const Eigen::Vector3d extent_m = box.max_in_source - box.min_in_source;
+  const double voxels = (extent_m / voxel_m + Eigen::Vector3d::Constant(2.0)).prod();
+  constexpr double most = std::numeric_limits<std::int32_t>::max();
+  if (voxels < most) return;
+  throw InputError(
+      {.file = cloud.name,
+       .element = "voxel",
+       .found = fmt::format("{:.3g} voxels of {} m around its points", voxels, voxel_m),
+       .needed = fmt::format("fewer than {:.0f}", most),
+       .remedy = "give larger voxels, or take points near the sensor (--range)"});
+}
+
 }  // namespace
 
 PointCloud without_vehicle(PointCloud cloud, const CloudFilter& filter) {
@@ -93,26 +109,6 @@ PointCloud within_reach(PointCloud cloud, const CloudFilter& filter, const std::
   });
   return cloud;
 }
-
-namespace {
-
-// PCL counts voxels in 32 bits, and leaves all points where they are too many.
-void check_voxels(const PointCloud& cloud, double voxel_m) {
-  if (!(voxel_m > 0.0)) return;
-  const Box3 box = bounds(cloud);
-  const Eigen::Vector3d extent_m = box.max_in_source - box.min_in_source;
-  const double voxels = (extent_m / voxel_m + Eigen::Vector3d::Constant(2.0)).prod();
-  constexpr double most = std::numeric_limits<std::int32_t>::max();
-  if (voxels < most) return;
-  throw InputError(
-      {.file = cloud.name,
-       .element = "voxel",
-       .found = fmt::format("{:.3g} voxels of {} m around its points", voxels, voxel_m),
-       .needed = fmt::format("fewer than {:.0f}", most),
-       .remedy = "give larger voxels, or take points near the sensor (--range)"});
-}
-
-}  // namespace
 
 PointCloud filtered(const PointCloud& cloud, const CloudFilter& filter) {
   check_voxels(cloud, filter.voxel_m);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -32,10 +33,10 @@ class NearestLine {
   }
 
   /// Of so many boxes at most, which it counts down; beyond, how far it is at most.
-  double distance_m(const Eigen::Vector2d& point, double most_m, double& boxes_left) const {
+  double distance_m(const Eigen::Vector2d& point, double most_m, std::int64_t& boxes_left) const {
     double least_m = most_m;
     tree_.nearest(point, most_m, [&](std::size_t index) {
-      if (--boxes_left < 0.0) return -1.0;  // ends the search
+      if (--boxes_left < 0) return -1.0;  // ends the search
       double nearest_m = 1e300;
       const LineSpan& chain = chains_[index];
       for (std::size_t i = 1; i < chain.size(); ++i) {
@@ -68,8 +69,7 @@ class LineError {
     std::size_t at = 1;
     std::optional<Place> last;
     const auto look = [&](const Eigen::Vector2d& point) {
-      constexpr double boxes = 8.0;
-      boxes_left_ += boxes;
+      boxes_left_ += 8;
       Place place{point, distance_beside_m(point, beside, at)};
       if (place.most_m > std::min(largest_.largest_m, kWorthALook_m)) {
         place.most_m = distance_m(point, place.most_m);
@@ -97,7 +97,7 @@ class LineError {
   };
 
   double distance_m(const Eigen::Vector2d& point, double most_m) {
-    return boxes_left_ > 0.0 ? others_.distance_m(point, most_m, boxes_left_) : most_m;
+    return boxes_left_ > 0 ? others_.distance_m(point, most_m, boxes_left_) : most_m;
   }
 
   void note(const Place& place) {
@@ -110,7 +110,7 @@ class LineError {
     const bool is_no_farther = 0.5 * (from.most_m + to.most_m + way_m) <= largest_.largest_m;
     if (way_m < kLookedAt_m || is_no_farther) return;
     const Eigen::Vector2d at = 0.5 * (from.at + to.at);
-    if (boxes_left_ <= 0.0) return note({at, 0.5 * (from.most_m + to.most_m + way_m)});
+    if (boxes_left_ <= 0) return note({at, 0.5 * (from.most_m + to.most_m + way_m)});
     const Place middle{at, distance_m(at, 0.5 * (from.most_m + to.most_m + way_m))};
     note(middle);
     look_between(from, middle);
@@ -135,7 +135,7 @@ class LineError {
   }
 
   const NearestLine& others_;
-  double boxes_left_ = 4'000.0;
+  std::int64_t boxes_left_ = 4'000;
   BorderError largest_;
 };
 

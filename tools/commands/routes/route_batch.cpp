@@ -143,36 +143,37 @@ class Batch {
     for (const planning::RouteLeg& leg : route.legs) {
       lanes += (lanes.empty() ? "" : " ") + road_map_.lane(leg.lane).name;
     }
-    RowAnswers cell{.csv = {}, .json = {}, .found = 1};
-    cell.csv = fmt::format("{},{},{},1,{:.4f},{:.4f},{:.3f},{},{},\n", row.line,
-                           map::csv_field(row.from), map::csv_field(row.to), route.cost_s,
-                           route.cost_m, route.length_m, route.lane_changes, map::csv_field(lanes));
-    if (options_.json) add_with_row(route_json(road_map_, route), row, cell);
-    return cell;
+    RowAnswers of_row{.csv = {}, .json = {}, .found = 1};
+    of_row.csv =
+        fmt::format("{},{},{},1,{:.4f},{:.4f},{:.3f},{},{},\n", row.line, map::csv_field(row.from),
+                    map::csv_field(row.to), route.cost_s, route.cost_m, route.length_m,
+                    route.lane_changes, map::csv_field(lanes));
+    if (options_.json) add_with_row(route_json(road_map_, route), row, of_row);
+    return of_row;
   }
 
   RowAnswers none(const PairRow& row, const std::string& reason) const {
-    RowAnswers cell{.csv = {}, .json = {}, .found = 0, .none = 1};
-    cell.csv = fmt::format("{},{},{},0,,,,,,{}\n", row.line, map::csv_field(row.from),
-                           map::csv_field(row.to), map::csv_field(reason));
-    if (options_.json) add_with_row({{"found", false}, {"reason", reason}}, row, cell);
-    return cell;
+    RowAnswers of_row{.csv = {}, .json = {}, .found = 0, .none = 1};
+    of_row.csv = fmt::format("{},{},{},0,,,,,,{}\n", row.line, map::csv_field(row.from),
+                             map::csv_field(row.to), map::csv_field(reason));
+    if (options_.json) add_with_row({{"found", false}, {"reason", reason}}, row, of_row);
+    return of_row;
   }
 
   // The table says that there is none, the document why.
   RowAnswers no_route(Own& own, const PairRow& row) const {
     const planning::RoutePlace from = *row.from_place, to = *row.to_place;
-    RowAnswers cell =
+    RowAnswers of_row =
         none(row, fmt::format("no lane sequence leads from lane {} to lane {}",
                               road_map_.lane(from.lane).name, road_map_.lane(to.lane).name));
-    if (!options_.json) return cell;
+    if (!options_.json) return of_row;
     if (!own.obstacles) own.obstacles.emplace(road_map_, solver_);
     planning::RouteAnswer answer;
     answer.explanation = own.obstacles->find(from, to);
     answer.reason = describe(road_map_, from, to, *answer.explanation);
-    cell.json.clear();
-    add_with_row(no_route_json(road_map_, answer), row, cell);
-    return cell;
+    of_row.json.clear();
+    add_with_row(no_route_json(road_map_, answer), row, of_row);
+    return of_row;
   }
 
   static void add_with_row(Json json, const PairRow& row, RowAnswers& answers) {
@@ -230,8 +231,8 @@ BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::pat
   answer.csv.reserve(csv_bytes);
   std::string documents;
   documents.reserve(json_bytes);
-  for (RowAnswers& of_row : answers) {  // one at a time, so that all is there once
-    const RowAnswers row = std::move(of_row);
+  for (RowAnswers& each : answers) {  // one at a time, so that all is there once
+    const RowAnswers row = std::move(each);
     answer.csv += row.csv;
     if (!documents.empty() && !row.json.empty()) documents += ',';
     documents += row.json;

@@ -137,7 +137,7 @@ WayPointLine::Table WayPointLine::table(double step_m, double max_move_m) const 
                            .needed =
                                "two distinct points (three for a closed line), and a way that "
                                "does not turn back on itself",
-                           .remedy = "mend the points, or take longer steps"});
+                           .remedy = "mend the points, or take longer steps or a shorter way"});
   }
 }
 

@@ -49,6 +49,14 @@ TEST_F(CloudFilterTest, ThinsToAPointPerCube) {
 }
 
 // As sweeps whose log says where on the vehicle the lidars are.
+// PCL would leave all points as they are, and say so on a line of its own.
+TEST_F(CloudFilterTest, RefusesCubesThatAreMoreThanCanBeCounted) {
+  PointCloud cloud;
+  cloud.points = {{0, 0, 0}, {1000, 1000, 100}};
+  EXPECT_EQ(filtered(cloud, {.voxel_m = 0.5}).points.size(), 2u);
+  EXPECT_THROW(filtered(cloud, {.voxel_m = 0.01}), InputError);
+}
+
 TEST_F(CloudFilterTest, KeepsFromWhereEachPointWasMeasured) {
   PointCloud cloud = wall_with_a_bird();
   const auto sensor_of = [](const PointCloud& of, std::size_t point) {

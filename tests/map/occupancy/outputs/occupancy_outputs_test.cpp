@@ -136,6 +136,15 @@ struct Column {
   double lowest_m = 1e9, highest_m = -1e9;
 };
 
+// 2,001 by 2,001 squares of two cells, and 4,001 by 4,001.
+TEST(GridRaster, IsRefusedWhereTwoCellsAreFarApart) {
+  const auto squares = [](double far_m) {
+    return raster_from_above(octree_of({{0.1, 0.1, 0.1}, {far_m, far_m, 0.1}}), {}, "a.bt").columns;
+  };
+  EXPECT_EQ(squares(1000.1), 2001u);
+  EXPECT_THROW(squares(2000.1), InputError);
+}
+
 TEST(GridRaster, HasTheBandsThatEachColumnOfCellsSays) {
   const OccupancyMap octree = octree_of(block_and_post(), Eigen::Vector3d(0.1, 0.1, 0.7));
   const GridHeights heights{0.5, 1.5};
