@@ -78,7 +78,7 @@ bool have_few_crossings(const std::vector<Ring>& rings) {
   std::vector<Box> boxes;
   for (const RingEdge& edge : edges) boxes.push_back(Box(edge.from).extend(edge.to));
   const BoxTree tree(boxes);
-  constexpr std::size_t kFew = 50'000, kFewEach = 16;
+  constexpr std::size_t kFew = 50'000 / kLimitDivisor, kFewEach = 16;
   WorkBudget crossings(kFew + kFewEach * edges.size()), tests(most_steps(edges.size()));
   for (std::size_t i = 0; i < edges.size() && !tests.is_spent() && !crossings.is_spent(); ++i) {
     tree.visit(boxes[i], [&](std::size_t k) {

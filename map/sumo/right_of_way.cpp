@@ -1,5 +1,7 @@
 #include "roadbed/map/sumo/right_of_way.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numbers>
 #include <set>
@@ -7,6 +9,8 @@
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/geometry/primitives/cross.h"
 #include "roadbed/geometry/primitives/segment.h"
+#include "roadbed/geometry/primitives/work_limit.h"
+#include "roadbed/map/files/input_error.h"
 
 namespace roadbed::map::sumo {
 namespace {
@@ -76,8 +80,30 @@ namespace {
 
 using Pairs = std::set<Prohibition>;
 
+/// Counts pairs of connections: of many lanes that all meet in one place there are the square of
+/// the square.
+class PairBudget {
+ public:
+  explicit PairBudget(const RoadMap& road_map)
+      : lanes_(road_map.lanes().size()), pairs_(geometry::most_steps(lanes_)) {}
+
+  /// @throws InputError if there are more of them than a map of so many lanes may have.
+  void spend(std::size_t pairs) {
+    if (pairs_.spend(pairs)) return;
+    throw InputError({.file = "SUMO",
+                      .found = fmt::format("more than {} pairs of connections at nodes of {} lanes",
+                                           geometry::most_steps(lanes_), lanes_),
+                      .needed = "fewer lanes that all lead into one another",
+                      .remedy = "clip the map to a part without them"});
+  }
+
+ private:
+  std::size_t lanes_;
+  geometry::WorkBudget pairs_;
+};
+
 void add_known(const RoadMap& road_map, const Net& net, const ConnectionConflicts& conflicts,
-               Pairs& found) {
+               PairBudget& budget, Pairs& found) {
   const auto connections = by_lane(road_map, net);
   for (const Regulation& regulation : road_map.regulations()) {
     if (regulation.type != "right_of_way") continue;
@@ -88,6 +114,7 @@ void add_known(const RoadMap& road_map, const Net& net, const ConnectionConflict
       if (member.role == "right_of_way") first.insert(first.end(), some.begin(), some.end());
       if (member.role == "yield") then.insert(then.end(), some.begin(), some.end());
     }
+    budget.spend(first.size() * then.size());
     for (const std::uint32_t a : first) {
       for (const std::uint32_t b : then) {
         const NetConnection &one = net.connections[a], &other = net.connections[b];
@@ -126,12 +153,13 @@ class CrossingTurns {
   }
 
   // Who turns less goes first, of equal ones that of the first edge.
-  void add(const std::vector<std::uint32_t>& here, Pairs& found) const {
+  void add(const std::vector<std::uint32_t>& here, PairBudget& budget, Pairs& found) const {
     std::vector<Turn> turns;
     for (const std::uint32_t i : here) {
       const double angle_rad = side_ * turn_rad(road_map_, net_, net_.connections[i]);
       if (angle_rad > -kStraight_rad) turns.push_back({angle_rad, i});
     }
+    budget.spend(turns.size() * turns.size() / 2);
     std::sort(turns.begin(), turns.end());
     for (std::size_t a = 0; a < turns.size(); ++a) {
       for (std::size_t b = a + 1; b < turns.size(); ++b) add(turns[a], turns[b], found);
@@ -183,8 +211,9 @@ double turn_rad(const RoadMap& road_map, const Net& net, const NetConnection& co
 std::vector<Prohibition> find_prohibitions(const RoadMap& road_map, const Net& net,
                                            const LaneLines& lines,
                                            const ConnectionConflicts& conflicts) {
+  PairBudget budget(road_map);
   Pairs known;
-  add_known(road_map, net, conflicts, known);
+  add_known(road_map, net, conflicts, budget, known);
   Pairs found;
   for (const Prohibition& one : known) {
     if (!known.contains({one.then_from, one.then_to, one.first_from, one.first_to})) {
@@ -192,7 +221,7 @@ std::vector<Prohibition> find_prohibitions(const RoadMap& road_map, const Net& n
     }
   }
   const CrossingTurns turns(road_map, net, lines);
-  for (const auto& here : conflicts.at_nodes()) turns.add(here, found);
+  for (const auto& here : conflicts.at_nodes()) turns.add(here, budget, found);
   return {found.begin(), found.end()};
 }
 

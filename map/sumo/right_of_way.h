@@ -39,6 +39,8 @@ double turn_rad(const RoadMap& road_map, const Net& net, const NetConnection& co
 /// Connections that meet and of which the map says that one gives way to the other, as OpenDRIVE's
 /// junctions and Lanelet2's right_of_way do; what it says both ways is left out. Where it says
 /// nothing, turns across the oncoming traffic wait for it, and one of two such turns that meet.
+/// O(pairs of connections across a node).
+/// @throws InputError if there are more of these than a map of its size may have (work_limit.h).
 std::vector<Prohibition> find_prohibitions(const RoadMap& road_map, const Net& net,
                                            const LaneLines& lines,
                                            const ConnectionConflicts& conflicts);

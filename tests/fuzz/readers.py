@@ -128,7 +128,7 @@ def options_of(name: str) -> list[str]:
         return [f"-max_len={MOST_BYTES}", "-entropic=0"]
     # Of a packed byte of .laz a hundred points may come; rows of a table are all alike, and so are
     # lines of jobs and the parts of a JSON document of no kind.
-    most_bytes = {"las": 1600, "jobs": 1024, "json": 512}.get(
+    most_bytes = {"las": 1600, "jobs": 1024, "json": 512, "pilot_lines": 1024}.get(
         name, 512 if name.endswith("_csv") else None)  # fmt: skip
     return ["-entropic=0"] + ([f"-max_len={most_bytes}"] if most_bytes else [])
 

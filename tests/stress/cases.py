@@ -232,6 +232,8 @@ CASES = [
     Case("winding lanelets", inputs.winding_lanelets, 10, map_commands("5,0") + AUTOWARE + EDIT),
     Case("same lanelets", inputs.same_lanelets, 10, map_commands("50,1.5", ".osm") + AUTOWARE + EDIT),
     Case("crossing lanelets", inputs.crossing_lanelets, 10, AUTOWARE + EDIT),
+    Case("fan of lanelets", inputs.fan_of_lanelets, 10,
+         map_commands("-20,1.5", ".nod.xml", ".xodr", ".osm", ".xml")),
     Case("same turns", inputs.same_turns, 10, map_commands("50,1.5", ".nod.xml", ".xodr") + AUTOWARE),
     Case("zigzag border", inputs.zigzag_border, 1000, map_commands("50,1.5") + AUTOWARE + EDIT),
     Case("border back and forth", inputs.border_back_and_forth, 1000, map_commands("50,1.5") + EDIT),

@@ -397,6 +397,20 @@ def same_lanelets(folder: Path, n: int) -> Path:
     return osm(folder, CORNERS + SIDES + "".join(lanelet(100 + i, 11, 12) for i in range(n)))
 
 
+def fan_of_lanelets(folder: Path, n: int) -> Path:
+    """Lanelets that lead from a circle to one place, and as many from there on."""
+    nodes, ways, lanelets = osm_node(1, 0, 0) + osm_node(2, 0, 3), "", ""
+    for i in range(2 * n):
+        name, comes = 10 + 4 * i, i < n
+        angle = math.pi * ((i % n + 0.5) / n + (0.5 if comes else -0.5))
+        x, y = 50 * math.cos(angle), 50 * math.sin(angle)
+        nodes += osm_node(name, x, y) + osm_node(name + 1, x, y + 3)
+        ways += osm_way(name + 2, [name + 1, 2] if comes else [2, name + 1])
+        ways += osm_way(name + 3, [name, 1] if comes else [1, name])
+        lanelets += lanelet(10_000_000 + i, name + 2, name + 3)
+    return osm(folder, nodes + ways + lanelets)
+
+
 def same_turns(folder: Path, n: int) -> Path:
     """Lanelets on each other that turn in one crossing."""
     tag = '<tag k="turn_direction" v="left"/></relation>'

@@ -95,11 +95,10 @@ class Search {
     each_section([&](SectionExtent& extent, double from_m, double to_m) {
       touching_spans(
           RegionPart(region), from_m, to_m,
-          [&](const RegionPart& around, double a_m, double b_m) {
+          [&](double a_m, double b_m) { return disc_around(a_m, b_m).box(); },
+          [&](const RegionPart& part, double a_m, double b_m) {
             const Disc disc = disc_around(a_m, b_m);
-            RegionPart part = around.within(disc.box());
-            const Region::Side side = part.side_of_disc(disc.centre, disc.radius_m);
-            return PartAndSide{std::move(part), side};
+            return part.side_of_disc(disc.centre, disc.radius_m);
           },
           [](double a_m, double b_m) { return b_m - a_m <= kStepM; },
           [&](const RegionPart& part, double s_m) {

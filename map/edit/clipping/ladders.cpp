@@ -105,12 +105,8 @@ std::vector<Span> LadderMap::spans_of(const Group& group, const Region& region) 
   }
   for (double row = 0.0; row < last; row += 1.0) {
     touching_spans(
-        RegionPart(region), row, row + 1.0,
-        [&](const RegionPart& around, double a, double b) {
-          RegionPart part = around.within(box_of(group, a, b));
-          const Region::Side side = side_of(group, a, b, part);
-          return PartAndSide{std::move(part), side};
-        },
+        RegionPart(region), row, row + 1.0, [&](double a, double b) { return box_of(group, a, b); },
+        [&](const RegionPart& part, double a, double b) { return side_of(group, a, b, part); },
         [&](double a, double b) { return length_m(group, a, b) <= kShortM; },
         [&](const RegionPart& part, double r) { return touches(group, r, part); }, spans);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "roadbed/map/edit/clipping/region_part.h"
@@ -12,23 +13,19 @@ struct Span {
   double from = 0.0, to = 0.0;
 };
 
-/// A part of a region, and on which side of it something lies.
-struct PartAndSide {
-  RegionPart part;
-  Region::Side side;
-};
-
 /// Where across something that is measured along by s a region is touched: its ends to within
 /// rounding. What is touched only inside a stretch that is short may be missed.
 /// @param around    of the region, what is near the whole stretch.
-/// @param look      what of that is near the stretch between two s, and the side of all across it:
-///                  outside, inside at least in part all along, or border where it is not known.
+/// @param box       around the stretch between two s.
+/// @param side      of a part of the region that is near such a stretch, all across it: outside,
+///                  inside at least in part all along, or border where it is not known.
 /// @param is_short  whether a stretch is not halved any more.
 /// @param touches   whether a part of the region is touched at s.
 /// @param found     in order; one that begins where the last one ends goes on with it.
-template <typename Look, typename IsShort, typename Touches>
-void touching_spans(const RegionPart& around, double from, double to, const Look& look,
-                    const IsShort& is_short, const Touches& touches, std::vector<Span>& found) {
+template <typename Box, typename Side, typename IsShort, typename Touches>
+void touching_spans(const RegionPart& around, double from, double to, const Box& box,
+                    const Side& side, const IsShort& is_short, const Touches& touches,
+                    std::vector<Span>& found) {
   const auto add = [&](double begin, double end) {
     if (!found.empty() && begin <= found.back().to) {
       found.back().to = std::max(found.back().to, end);
@@ -36,13 +33,16 @@ void touching_spans(const RegionPart& around, double from, double to, const Look
       found.push_back({begin, end});
     }
   };
-  const auto [part, where] = look(around, from, to);
+  std::optional<RegionPart> nearer;
+  if (!around.is_simple()) nearer = around.within(box(from, to));
+  const RegionPart& part = nearer ? *nearer : around;
+  const Region::Side where = side(part, from, to);
   if (where == Region::Side::outside) return;
   if (where == Region::Side::inside) return add(from, to);
   if (!is_short(from, to)) {
     const double middle = 0.5 * (from + to);
-    touching_spans(part, from, middle, look, is_short, touches, found);
-    touching_spans(part, middle, to, look, is_short, touches, found);
+    touching_spans(part, from, middle, box, side, is_short, touches, found);
+    touching_spans(part, middle, to, box, side, is_short, touches, found);
     return;
   }
   const bool first = touches(part, from), last = touches(part, to);
