@@ -2,9 +2,16 @@
 // file's size, and in no more than linear time (these take seconds, or hours).
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <string>
 
+#include "roadbed/map/load_map.h"
+#include "roadbed/map/opendrive/write/write.h"
+#include "roadbed/map/sumo/write.h"
 #include "roadbed/tests/support/bounded_reading.h"
+#include "roadbed/tests/support/made_lanelet2.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map {
 namespace {
@@ -63,6 +70,40 @@ TEST(HostileLanelet2, RegulationsThatReferToThemselvesAreRead) {
       <member type="relation" ref="7" role="refers"/><tag k="type" v="regulatory_element"/>
       <tag k="subtype" v="traffic_light"/></relation>)";
   expect_read_in_bounds(osm(text), "read 1 lanes");
+}
+
+// Each lanelet leads from a circle to one place, or from there on.
+RoadMap fan(int lanelets_each_way) {
+  tests::MadeLanelet2 file;
+  const auto left = file.node({0, 3}), right = file.node({0, 0});
+  for (int i = 0; i < 2 * lanelets_each_way; ++i) {
+    const bool comes = i < lanelets_each_way;
+    const double along = (i % lanelets_each_way + 0.5) / lanelets_each_way;
+    const double angle_rad = std::numbers::pi * (along + (comes ? 0.5 : -0.5));
+    const double x = 50.0 * std::cos(angle_rad), y = 50.0 * std::sin(angle_rad);
+    const auto far_left = file.node({x, y + 3.0}), far_right = file.node({x, y});
+    file.lanelet(file.way(comes ? std::vector{far_left, left} : std::vector{left, far_left}),
+                 file.way(comes ? std::vector{far_right, right} : std::vector{right, far_right}));
+  }
+  return parse_map(file.text(), "fan.osm");
+}
+
+TEST(HostileLanelet2, LanesThatAllLeadIntoOneAnotherAreWrittenUpToALimitOfTheirNumber) {
+  const auto sumo = [](const RoadMap& map) {
+    return tests::refusal_of([&] { sumo::write_sumo(map, {}); });
+  };
+  EXPECT_EQ(sumo(fan(10)), "accepted");
+  EXPECT_EQ(sumo(fan(80)),
+            "SUMO: more than 180000 pairs of connections at nodes of 160 lanes, needs fewer lanes "
+            "that all lead into one another; clip the map to a part without them");
+  const auto open_drive = [](const RoadMap& map) {
+    return tests::refusal_of([&] { opendrive::write_open_drive(map, {}); });
+  };
+  EXPECT_EQ(open_drive(fan(10)), "accepted");
+  EXPECT_EQ(open_drive(fan(300)),
+            "OpenDRIVE: 600 lanes that lead into one another in more ways than 16150, each a "
+            "connecting road, needs fewer lanes that end and begin in one place; clip the map to a "
+            "part without them");
 }
 
 TEST(HostileLanelet2, DepthAttributesAndEntitiesAreBounded) {

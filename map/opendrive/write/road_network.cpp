@@ -1,11 +1,15 @@
 #include "roadbed/map/opendrive/write/road_network.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/geometry/primitives/disjoint_sets.h"
+#include "roadbed/geometry/primitives/work_limit.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/opendrive/write/end_roles.h"
 #include "roadbed/map/opendrive/write/id_giver.h"
 
@@ -16,6 +20,12 @@ constexpr double kCut_m = 20.0;    // length of a connecting road that is cut of
 constexpr double kLong_m = 100.0;  // of a road between two junctions
 constexpr double kCopied_m = 5.0;  // length of connecting roads that overlap
 constexpr double kTurnsBack_rad = 150.0 * geometry::kRadiansPerDegree;
+
+// Of connecting roads that overlap, of a map of so many lanes.
+std::size_t most_copies(std::size_t lanes) {
+  constexpr std::size_t kBytesOfLane = 500, kBytesOfCopy = 8'000;  // in a file; until it is in one
+  return geometry::most_bytes_read(kBytesOfLane * lanes) / kBytesOfCopy;
+}
 
 bool turns_back(const RoadShape& shape) {
   const geometry::PlanPiece& last = shape.plan_view.back();
@@ -32,7 +42,8 @@ class NetworkBuilder {
         plan_(plan),
         shapes_(shapes),
         ends_(find_end_roles(road_map, plan)),
-        clusters_(2 * plan.roads.size() + crossings()) {
+        clusters_(2 * plan.roads.size() + crossings()),
+        copies_left_(most_copies(road_map.lanes().size())) {
     network_.parts_of.resize(plan.roads.size());
     network_.lost_links = ends_.lost_links;
     for (const auto& [ends, lanes] : ends_.joints) meeting_[ends.second].push_back(ends.first);
@@ -153,6 +164,15 @@ class NetworkBuilder {
   // @param middle  what is left of the road between its ends, if anything is.
   void add_copies(std::uint32_t end, double from_m, double to_m,
                   std::optional<std::uint32_t> middle) {
+    if (!copies_left_.spend(meeting_[end].size())) {
+      const std::size_t lanes = road_map_.lanes().size();
+      throw InputError({.file = "OpenDRIVE",
+                        .found = fmt::format("{} lanes that lead into one another in more ways "
+                                             "than {}, each a connecting road",
+                                             lanes, most_copies(lanes)),
+                        .needed = "fewer lanes that end and begin in one place",
+                        .remedy = "clip the map to a part without them"});
+    }
     for (const std::uint32_t from : meeting_[end]) {
       const std::uint32_t copy = add_part(end / 2, from_m, to_m, ends_.groups[end]);
       copies_[{from, end}] = copy;
@@ -341,6 +361,7 @@ class NetworkBuilder {
   EndRoles ends_;
   // Groups of ends that lie in one junction: numbers of groups, then crossings of the map.
   geometry::DisjointSets clusters_;
+  geometry::WorkBudget copies_left_;
   std::vector<std::optional<std::uint32_t>> cluster_of_;  // by part
   std::vector<std::pair<std::uint32_t, std::uint32_t>> cuts_;
   std::map<std::uint32_t, std::vector<std::uint32_t>> meeting_;  // ends that lead to an end

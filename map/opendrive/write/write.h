@@ -29,6 +29,7 @@ struct OpenDriveFile {
 /// and users; signals, stop lines, crosswalks and other objects. x and y stay the source's own. A
 /// pure function: same map, same bytes.
 /// @throws std::invalid_argument if the revision is none of 1.4 to 1.8.
+/// @throws InputError if more lanes lead into one another in one place than a file can hold.
 OpenDriveFile write_open_drive(const RoadMap& road_map, const OpenDriveOptions& options);
 
 /// Elements of an OpenDRIVE file that are read, but that no file of its map has, and how many.
