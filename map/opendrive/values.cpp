@@ -33,9 +33,10 @@ double AttributeReader::number(pugi::xml_node node, const char* attribute) {
 
 double AttributeReader::number(pugi::xml_node node, const char* attribute,
                                pugi::xml_attribute& next) {
-  if (const auto value = xml.optional_number(node, attribute, next)) return *value;
-  keep_fault_of([&] { static_cast<void>(xml.number(node, attribute)); });
-  return kBroken;
+  if (const auto found = xml.optional_number(node, attribute, next)) return *found;
+  double value = kBroken;
+  keep_fault_of([&] { value = xml.number(node, attribute); });  // the first, where one is repeated
+  return value;
 }
 
 double AttributeReader::number_or(pugi::xml_node node, const char* attribute, double fallback) {

@@ -189,6 +189,14 @@ TEST(OpenDriveLimits, NumbersBeyondAnyRoadAreRefusedOrSaid) {
   }
 }
 
+TEST(OpenDriveLimits, OfAnAttributeThatIsRepeatedTheFirstCounts) {
+  MadeRoad road;
+  road.lateral = R"(<crossfall b="0" s="0" a=".1" b="-inf" c="0" d="0"/>)";
+  EXPECT_THAT(outcome_of(made_document(made_road(road))), HasSubstr("read 2 lanes"));
+  road.lateral = R"(<crossfall b="-inf" s="0" a=".1" b="0" c="0" d="0"/>)";
+  EXPECT_THAT(outcome_of(made_document(made_road(road))), HasSubstr("read 2 lanes"));
+}
+
 TEST(OpenDriveLimits, TinyAndZeroLengthsAreFindings) {
   MadeRoad road;
   road.lanes =
