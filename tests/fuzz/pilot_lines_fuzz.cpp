@@ -29,6 +29,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   planning::Pilot pilot({.road_map = town, .goal = {*town->find_lane("3100/0/-2"), 30.0}});
   std::istringstream again(text);
   std::ostringstream out;
-  tools::answer_lines(pilot, *town, again, out, {.most_bytes = 400, .tells_objects = true});
+  tools::answer_lines(pilot, *town, again, out, {.tells_objects = true, .most_bytes = 400});
   return 0;
 }
