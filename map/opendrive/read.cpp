@@ -57,7 +57,8 @@ void sample_reference(const RoadRecord& record, const geometry::PlanView& view, 
     const double length_m = breaks[i + 1] - breaks[i];
     const double bound = view.bounds(breaks[i], breaks[i + 1]).second_derivative_per_m;
     const double steps = std::ceil(length_m * std::sqrt(bound / (8.0 * max_error_m)));
-    const int count = static_cast<int>(std::clamp(steps, 1.0, 1e6));
+    constexpr int most = 1'000'000;  // also of a bound that is no number
+    const int count = steps < most ? std::max(1, static_cast<int>(steps)) : most;
     budget.spend(static_cast<std::size_t>(count), road.id.index);
     for (int k = i == 0 ? 0 : 1; k <= count; ++k) {
       const double s_m = breaks[i] + length_m * k / count;

@@ -218,6 +218,8 @@ CASES = [
     Case("crooked road", inputs.crooked_road, 50, map_commands("50,-1.7", ".nod.xml")),
     Case("signals of all lanes", inputs.signals_of_all_lanes, 50, ALL + EDIT),
     Case("repeated objects", inputs.repeated_objects, 10, map_commands("50,-1.7") + EDIT),
+    Case("repeated outlines", inputs.repeated_outlines, 4,
+         map_commands("50,-1.7", "anchored .osm", ".geojson", ".fgb")),
     Case("roads of one name", inputs.roads_of_one_name, 100, map_commands("50,-1.7")[:2] + EDIT),
     Case("unknown elements", inputs.unknown_elements, 3000, map_commands("50,-1.7") + EDIT),
     Case("attributes of a road", inputs.attributes_of_a_road, 1000, map_commands("50,-1.7")[:3] + EDIT),

@@ -321,6 +321,22 @@ def repeated_objects(folder: Path, n: int) -> Path:
     return open_drive(folder, road(1, extra=f"<objects>{objects}</objects>"))
 
 
+def repeated_outlines(folder: Path, n: int) -> Path:
+    turns = [2 * math.pi * i / n for i in range(n)]
+    corners = "".join(
+        f'<cornerLocal u="{3 * math.cos(turn):.3f}" v="{3 * math.sin(turn):.3f}" z="0" height="1"/>'
+        for turn in turns
+    )
+    objects = "".join(
+        f'<object id="{i}" s="50" t="-5" type="barrier" zOffset="0" length="1" width="1" '
+        'height="1"><repeat s="0" length="90" distance="0.02" tStart="0" tEnd="0" heightStart="1" '
+        'heightEnd="1" zOffsetStart="0" zOffsetEnd="0"/>'
+        f'<outlines><outline id="0" closed="true">{corners}</outline></outlines></object>'
+        for i in range(50)
+    )
+    return open_drive(folder, road(1, extra=f"<objects>{objects}</objects>"))
+
+
 def roads_of_one_name(folder: Path, n: int) -> Path:
     return open_drive(folder, "".join(road("same", 200 * i) for i in range(n)))
 

@@ -26,17 +26,14 @@ void append_tags(const Attributes& tags, std::string& text) {
   for (const auto& [key, value] : tags) append_tag(key, value, text);
 }
 
-void append_node(const OsmNode& node, const OsmPlaces& places, std::size_t index,
-                 std::string& text) {
-  const GeographicPoint& on_earth = places.on_earth[index];
-  const Eigen::Vector2d& local = places.local[index];
+void append_node(const OsmNode& node, const OsmPlace& place, double z_offset_m, std::string& text) {
   fmt::format_to(std::back_inserter(text), "  <node id=\"{}\" lat=\"{:.12f}\" lon=\"{:.12f}\">\n",
-                 node.id, on_earth.latitude_deg, on_earth.longitude_deg);
-  if (!places.mgrs_codes.empty()) append_tag("mgrs_code", places.mgrs_codes[index], text);
+                 node.id, place.on_earth.latitude_deg, place.on_earth.longitude_deg);
+  if (!place.mgrs_code.empty()) append_tag("mgrs_code", place.mgrs_code, text);
   fmt::format_to(std::back_inserter(text),
                  "    <tag k=\"local_x\" v=\"{:.6f}\"/>\n    <tag k=\"local_y\" v=\"{:.6f}\"/>\n"
                  "    <tag k=\"ele\" v=\"{:.4f}\"/>\n",
-                 local.x(), local.y(), node.in_map.z() + places.z_offset_m);
+                 place.local.x(), place.local.y(), node.in_map.z() + z_offset_m);
   append_tags(node.tags, text);
   text += "  </node>\n";
 }
@@ -147,16 +144,19 @@ void remove_tag(Attributes& tags, std::string_view key) {
   std::erase_if(tags, [&](const auto& tag) { return tag.first == key; });
 }
 
-std::string osm_text(const OsmMap& osm, const OsmPlaces& places) {
+std::string osm_text(const OsmMap& osm, const OsmFrame& frame,
+                     const std::function<OsmPlace(std::size_t)>& place_of) {
   std::string text;
   text.reserve(400 * (osm.nodes.size() + 100));  // what is not written to takes no memory
   text +=
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<osm version=\"0.6\" upload=\"never\" generator=\"roadbed\"";
-  if (!places.crs.empty()) text += fmt::format(" crs=\"{}\"", xml_text(places.crs));
+  if (!frame.crs.empty()) text += fmt::format(" crs=\"{}\"", xml_text(frame.crs));
   text += ">\n";
-  if (places.with_versions) text += "  <MetaInfo format_version=\"1\" map_version=\"1\"/>\n";
-  for (std::size_t i = 0; i < osm.nodes.size(); ++i) append_node(osm.nodes[i], places, i, text);
+  if (frame.with_versions) text += "  <MetaInfo format_version=\"1\" map_version=\"1\"/>\n";
+  for (std::size_t i = 0; i < osm.nodes.size(); ++i) {
+    append_node(osm.nodes[i], place_of(i), frame.z_offset_m, text);
+  }
   for (const OsmWay& way : osm.ways) append_way(osm, way, text);
   for (const OsmRelation& relation : osm.relations) append_relation(osm, relation, text);
   text += "</osm>\n";

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -85,18 +86,24 @@ std::string_view tag_of(const Attributes& tags, std::string_view key);
 void set_tag(Attributes& tags, std::string_view key, std::string_view value);
 void remove_tag(Attributes& tags, std::string_view key);
 
-/// Where the nodes of a file are, one after the other, and what it says of itself.
-struct OsmPlaces {
-  std::vector<GeographicPoint> on_earth;  ///< zeros where that is unknown
-  std::vector<Eigen::Vector2d> local;     ///< as local_x and local_y say it
-  std::vector<std::string> mgrs_codes;    ///< or empty
-  double z_offset_m = 0.0;                ///< from in_map to `ele`
-  std::string crs;                        ///< of the local coordinates; empty: not said
-  bool with_versions = false;             ///< Autoware's MetaInfo
+/// Where a node is.
+struct OsmPlace {
+  GeographicPoint on_earth;         ///< zeros where that is unknown
+  Eigen::Vector2d local{0, 0};      ///< as local_x and local_y say it
+  std::string_view mgrs_code = {};  ///< or empty
+};
+
+/// What a file says of itself.
+struct OsmFrame {
+  double z_offset_m = 0.0;     ///< from in_map to `ele`
+  std::string crs;             ///< of the local coordinates; empty: not said
+  bool with_versions = false;  ///< Autoware's MetaInfo
 };
 
 /// The whole file: nodes with lat, lon, local_x, local_y and ele, then ways, then relations. Its
 /// root says that it is not to be uploaded to OpenStreetMap.
-std::string osm_text(const OsmMap& osm, const OsmPlaces& places);
+/// @param place_of  of a node, by its place in OsmMap::nodes; asked once for each.
+std::string osm_text(const OsmMap& osm, const OsmFrame& frame,
+                     const std::function<OsmPlace(std::size_t)>& place_of);
 
 }  // namespace roadbed::map::lanelet2

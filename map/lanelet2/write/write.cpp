@@ -20,18 +20,16 @@ TransverseMercator grid_of(const std::string& crs) {
        .remedy = "give --anchor LAT,LON: where its coordinates 0,0 are"});
 }
 
-OsmPlaces places_of(const RoadMap& road_map, const OsmMap& osm, const Lanelet2Options& options,
+std::string text_of(const RoadMap& road_map, const OsmMap& osm, const Lanelet2Options& options,
                     const TransverseMercator& grid) {
   const CrsOffset& offset = options.offset_in_crs;
   const geometry::Pose2 crs_from_source{offset.x_m, offset.y_m, offset.heading_rad};
-  OsmPlaces places;
-  for (const OsmNode& node : osm.nodes) {
-    places.local.push_back(road_map.to_source(node.in_map.head<2>()));
-    places.on_earth.push_back(grid.inverse(crs_from_source * places.local.back()));
-  }
-  places.z_offset_m = offset.z_m;
-  if (offset == CrsOffset{}) places.crs = options.crs;
-  return places;
+  OsmFrame frame{.z_offset_m = offset.z_m, .crs = {}};
+  if (offset == CrsOffset{}) frame.crs = options.crs;
+  return osm_text(osm, frame, [&](std::size_t i) {
+    const Eigen::Vector2d local = road_map.to_source(osm.nodes[i].in_map.head<2>());
+    return OsmPlace{grid.inverse(crs_from_source * local), local};
+  });
 }
 
 std::vector<std::pair<std::string, std::size_t>> lost_of(const RoadMap& road_map,
@@ -54,8 +52,7 @@ std::vector<std::pair<std::string, std::size_t>> lost_of(const RoadMap& road_map
 Lanelet2File write_lanelet2(const RoadMap& road_map, const Lanelet2Options& options) {
   const TransverseMercator grid = grid_of(options.crs);
   const LaneletMap made = lanelet_map(road_map);
-  return {osm_text(made.osm, places_of(road_map, made.osm, options, grid)), notes_of(made),
-          lost_of(road_map, made)};
+  return {text_of(road_map, made.osm, options, grid), notes_of(made), lost_of(road_map, made)};
 }
 
 Lanelet2File write_lanelet2(const RoadMap& road_map) {

@@ -197,6 +197,14 @@ TEST(OpenDriveLimits, OfAnAttributeThatIsRepeatedTheFirstCounts) {
   EXPECT_THAT(outcome_of(made_document(made_road(road))), HasSubstr("read 2 lanes"));
 }
 
+TEST(OpenDriveLimits, AGeometryAtAStationBeyondAnyRoadIsRefused) {
+  MadeRoad road;
+  road.plan_view = R"(<geometry s="1e300" x="9" y="1" hdg="0.5" length="100">
+    <poly3 a="0" b="0" c="1" d="0"/></geometry>)";
+  EXPECT_THAT(outcome_of(made_document(made_road(road))),
+              HasSubstr("a place, station, length or curvature beyond that of any road"));
+}
+
 TEST(OpenDriveLimits, TinyAndZeroLengthsAreFindings) {
   MadeRoad road;
   road.lanes =

@@ -31,22 +31,22 @@ class FrameMaker {
   FrameMaker(const RoadMap& road_map, const OsmMap& osm, const SourceFrame& source)
       : source_(source) {
     for (const OsmNode& node : osm.nodes) {
-      frame_.places.local.push_back(road_map.to_source(node.in_map.head<2>()));
+      frame_.local.push_back(road_map.to_source(node.in_map.head<2>()));
     }
-    frame_.places.on_earth.resize(osm.nodes.size(), GeographicPoint{});
-    frame_.places.with_versions = true;
+    frame_.on_earth.resize(osm.nodes.size(), GeographicPoint{});
+    frame_.of_file.with_versions = true;
   }
 
   AutowareFrame make() {
     frame_.projector_info = kLocalInfo;
-    if (frame_.places.local.empty()) return std::move(frame_);
+    if (frame_.local.empty()) return std::move(frame_);
     if (!find_on_earth()) {
       if (!source_.is_autoware) {
         note("where the map is is unknown: projector Local, latitudes and longitudes of 0");
       }
       return std::move(frame_);
     }
-    frame_.places.z_offset_m = source_.offset_in_crs.z_m;
+    frame_.of_file.z_offset_m = source_.offset_in_crs.z_m;
     if (source_.is_autoware) {
       keep_local();
     } else {
@@ -62,11 +62,11 @@ class FrameMaker {
     if (source_.crs.empty()) return false;
     const CrsOffset& offset = source_.offset_in_crs;
     const geometry::Pose2 crs_from_source{offset.x_m, offset.y_m, offset.heading_rad};
-    std::vector<Vector2d> points = frame_.places.local;
+    std::vector<Vector2d> points = frame_.local;
     for (Vector2d& point : points) point = crs_from_source * point;
     if (const auto grid = transverse_mercator_of(source_.crs)) {
       for (std::size_t i = 0; i < points.size(); ++i) {
-        frame_.places.on_earth[i] = grid->inverse(points[i]);
+        frame_.on_earth[i] = grid->inverse(points[i]);
       }
       return true;
     }
@@ -77,13 +77,13 @@ class FrameMaker {
     }
     to_lon_lat(source_.crs, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      frame_.places.on_earth[i] = {points[i].y(), points[i].x()};
+      frame_.on_earth[i] = {points[i].y(), points[i].x()};
     }
     return true;
   }
 
   Zone zone_of_middle() const {
-    const auto& all = frame_.places.on_earth;
+    const auto& all = frame_.on_earth;
     const auto [low, high] = std::ranges::minmax(
         all, {}, [](const GeographicPoint& point) { return point.latitude_deg; });
     // About the first node, so that a map at 180° has a middle, too.
@@ -109,7 +109,7 @@ class FrameMaker {
     const TransverseMercator grid = zone.grid();
     std::vector<Vector2d> in_zone;
     std::map<std::pair<double, double>, std::size_t> count;
-    for (const GeographicPoint& point : frame_.places.on_earth) {
+    for (const GeographicPoint& point : frame_.on_earth) {
       in_zone.push_back(grid.forward(point));
       const Vector2d corner = corner_below(in_zone.back());
       ++count[{corner.x(), corner.y()}];
@@ -124,8 +124,8 @@ class FrameMaker {
     }
     const double stretch = stretch_to(in_zone);
     for (std::size_t i = 0; i < in_zone.size(); ++i) {
-      frame_.places.local[i] = in_zone[i] - corner;
-      frame_.places.mgrs_codes.push_back(mgrs_code(zone.number, zone.south, in_zone[i], 3));
+      frame_.local[i] = in_zone[i] - corner;
+      frame_.mgrs_codes.push_back(mgrs_code(zone.number, zone.south, in_zone[i], 3));
     }
     set_square(zone, corner, square);
     if (std::abs(stretch) > 1e-6) {
@@ -152,12 +152,12 @@ class FrameMaker {
     TransverseMercator grid = zone.grid();
     grid.false_easting_m -= corner.x();
     grid.false_northing_m -= corner.y();
-    frame_.places.crs = crs_text(grid);
+    frame_.of_file.crs = crs_text(grid);
   }
 
   // By how much the map is longer in the zone than in the source, along its box's longer side.
   double stretch_to(const std::vector<Vector2d>& in_zone) const {
-    const auto& local = frame_.places.local;
+    const auto& local = frame_.local;
     std::pair<std::size_t, std::size_t> ends;
     double most_m = 0.0;
     for (const int axis : {0, 1}) {
@@ -175,7 +175,7 @@ class FrameMaker {
 
   // Local coordinates of an Autoware map fit its point cloud: they are not touched.
   void keep_local() {
-    frame_.places.crs = source_.crs;
+    frame_.of_file.crs = source_.crs;
     const auto grid = transverse_mercator_of(source_.crs);
     const Zone zone = zone_of_middle();
     const TransverseMercator whole = zone.grid();
@@ -207,6 +207,14 @@ class FrameMaker {
 AutowareFrame autoware_frame(const RoadMap& road_map, const OsmMap& osm,
                              const SourceFrame& source) {
   return FrameMaker(road_map, osm, source).make();
+}
+
+std::string osm_text(const OsmMap& osm, const AutowareFrame& frame) {
+  return osm_text(osm, frame.of_file, [&](std::size_t i) {
+    OsmPlace place{frame.on_earth[i], frame.local[i]};
+    if (!frame.mgrs_codes.empty()) place.mgrs_code = frame.mgrs_codes[i];
+    return place;
+  });
 }
 
 }  // namespace roadbed::map::lanelet2

@@ -15,9 +15,13 @@ struct SourceFrame {
   bool is_autoware = false;  ///< they are local_x and local_y of a file, and stay what they are
 };
 
-/// The coordinates of an Autoware map, and its map_projector_info.yaml.
+/// The coordinates of an Autoware map, and its map_projector_info.yaml. Places are those of the
+/// nodes, one after the other.
 struct AutowareFrame {
-  OsmPlaces places;
+  OsmFrame of_file;
+  std::vector<GeographicPoint> on_earth;
+  std::vector<Eigen::Vector2d> local;
+  std::vector<std::string> mgrs_codes;  ///< or empty
   std::string projector_info;
   std::vector<std::string> notes;
 };
@@ -33,5 +37,8 @@ struct AutowareFrame {
 /// The square is that of most nodes, the zone that of their middle: a map over an edge of either
 /// has one frame all the same.
 AutowareFrame autoware_frame(const RoadMap& road_map, const OsmMap& osm, const SourceFrame& source);
+
+/// The file of a map in its frame.
+std::string osm_text(const OsmMap& osm, const AutowareFrame& frame);
 
 }  // namespace roadbed::map::lanelet2

@@ -70,7 +70,7 @@ class AutowareWriter {
     add_road_markings(plain, made_);
     add_rights_of_way(written(), made_);
     AutowareFrame frame = this->frame();
-    AutowareFiles files{osm_text(made_.osm, frame.places), std::move(frame.projector_info),
+    AutowareFiles files{osm_text(made_.osm, frame), std::move(frame.projector_info),
                         lost_of(road_map_, made_), std::move(frame.notes)};
     add_notes(assumed, files.notes);
     return files;
@@ -82,7 +82,7 @@ class AutowareWriter {
                           {options_.crs, options_.offset_in_crs, has_local_coordinates(road_map_)});
   }
 
-  WrittenMap written() const { return {made_.osm, frame().places}; }
+  WrittenMap written() const { return {made_.osm, frame()}; }
 
   void add_notes(const AssumedOfLights& assumed, std::vector<std::string>& notes) {
     for (std::string& note : notes_of(made_)) notes.push_back(std::move(note));

@@ -3,8 +3,8 @@
 namespace roadbed::map::lanelet2 {
 
 // Elements of a written file have ids of their own, so that all are read, in the same order.
-WrittenMap::WrittenMap(const OsmMap& osm, const OsmPlaces& places)
-    : document_(read_document(osm_text(osm, places), "Lanelet2")),
+WrittenMap::WrittenMap(const OsmMap& osm, const AutowareFrame& frame)
+    : document_(read_document(osm_text(osm, frame), "Lanelet2")),
       built_(build_lanes(document_)),
       source_(document_, built_),
       map_(source_, built_) {}

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "roadbed/map/lanelet2/autoware/vector_map.h"
-#include "roadbed/map/lanelet2/write/osm_map.h"
+#include "roadbed/map/lanelet2/write/autoware/frame.h"
 
 namespace roadbed::map::lanelet2 {
 
@@ -11,7 +11,7 @@ namespace roadbed::map::lanelet2 {
 /// and the rules agree on who meets whom. Later changes to the elements are not seen.
 class WrittenMap {
  public:
-  WrittenMap(const OsmMap& osm, const OsmPlaces& places);
+  WrittenMap(const OsmMap& osm, const AutowareFrame& frame);
 
   const autoware::VectorMap& map() const { return map_; }
 
