@@ -38,9 +38,6 @@ void read_plan_view(AttributeReader& in, RoadRecord& road, RoadNotes& notes);
 /// Shorter than this a piece has no direction of its own; leaving it out moves nothing.
 inline constexpr double kShortestPieceM = 1e-9;
 
-/// Longest road that is taken for one [m].
-inline constexpr double kLongestRoadM = 1e6;
-
 /// The records of <laneOffset>, as listed.
 void read_lane_offset(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road);
 

@@ -128,7 +128,7 @@ constexpr std::array<const char*, 3> kSides = {"left", "center", "right"};
 void read_section(AttributeReader& in, pugi::xml_node node, LaneSection& section,
                   RoadNotes& notes) {
   section.node = node;
-  section.s_m = in.number(node, "s");
+  section.s_m = in.station_m(node, "s");
   section.line = in.xml.line_of(node);
   section.single_side = is_true(node.attribute("singleSide").value());
   LaneReader reader(in, section.s_m, notes.remarks);

@@ -82,8 +82,8 @@ bool is_in_range(const geometry::PlanPiece& piece) {
     if (is_too_long(*curve)) return false;
   }
   return std::abs(piece.start.x_m) <= kFarthestM && std::abs(piece.start.y_m) <= kFarthestM &&
-         std::abs(piece.start.heading_rad) <= 1e6 && std::abs(piece.s_m) <= kLongestRoadM &&
-         piece.length_m <= kLongestRoadM && turning_rad <= kMostTurningRad;
+         std::abs(piece.start.heading_rad) <= 1e6 && piece.length_m <= kLongestRoadM &&
+         turning_rad <= kMostTurningRad;
 }
 
 // paramPoly3: its parameter is taken as proportional to s, so its length must be the stated one.
@@ -123,8 +123,8 @@ std::optional<geometry::PlanPiece> read_piece(AttributeReader& in, const Geometr
   if (!curve || std::isnan(record.s_m) || has_broken_number(*curve)) return {};
   const geometry::PlanPiece piece{record.s_m, record.length_m, start, *curve};
   if (is_in_range(piece)) return piece;
-  in.refuse(node, "a place, station, length or curvature beyond that of any road",
-            "|x|, |y| ≤ 1e8 m, |s|, length ≤ 1e6 m, turning ≤ 100 rad", "correct the values");
+  in.refuse(node, "a place, length or curvature beyond that of any road",
+            "|x|, |y| ≤ 1e8 m, length ≤ 1e6 m, turning ≤ 100 rad", "correct the values");
   return {};
 }
 
@@ -142,7 +142,7 @@ void read_plan_view(AttributeReader& in, RoadRecord& road, RoadNotes& notes) {
       in.set_aside([&] { record.s_m = in.number(node, "s"); });
       continue;
     }
-    record.s_m = in.number(node, "s");
+    record.s_m = in.station_m(node, "s");
     record.piece = read_piece(in, record);
     if (record.piece) check_param_poly3(road, *record.piece, in.xml.line_of(node), notes);
   }

@@ -62,7 +62,7 @@ void read_crossfall(AttributeReader& in, pugi::xml_node lateral, RoadRecord& roa
 LateralShape read_shape(AttributeReader& in, pugi::xml_node lateral) {
   std::vector<std::pair<double, geometry::CubicRecord>> records;
   for (const auto node : lateral.children("shape")) {
-    const double s_m = in.number(node, "s");
+    const double s_m = in.station_m(node, "s");
     records.emplace_back(s_m, read_cubic(in, node, "t", 0.0));
   }
   if (in.fault()) return {};  // no map will ask
@@ -84,7 +84,7 @@ LateralShape read_shape(AttributeReader& in, pugi::xml_node lateral) {
 std::vector<geometry::CubicRecord> read_coefficients(AttributeReader& in, pugi::xml_node parent) {
   std::vector<geometry::CubicRecord> records;
   for (const auto node : parent.children("coefficients")) {
-    records.push_back({in.number(node, "s"), in.number_or(node, "a", 0.0),
+    records.push_back({in.station_m(node, "s"), in.number_or(node, "a", 0.0),
                        in.number_or(node, "b", 0.0), in.number_or(node, "c", 0.0),
                        in.number_or(node, "d", 0.0)});
   }

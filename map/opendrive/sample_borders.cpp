@@ -101,8 +101,10 @@ class SideSampler {
       while (step_m > kShortestStepM) {
         const double bound = stretch_.second_derivative_bound(s_m, s_m + step_m);
         if (step_m * step_m * bound <= 8.0 * chord_error_m) break;
-        step_m = std::max(0.5 * step_m, kAlmost * std::sqrt(8.0 * chord_error_m / bound));
-        step_m = std::max(step_m, kShortestStepM);
+        const double fitting_m = kAlmost * std::sqrt(8.0 * chord_error_m / bound);
+        const double half_m = 0.5 * step_m;  // also of a bound that is no number
+        step_m =
+            std::max(fitting_m < step_m ? std::max(half_m, fitting_m) : half_m, kShortestStepM);
       }
       const bool at_end = to_s_m - s_m - step_m < kShortestStretchM;
       stations_m_.push_back(at_end ? to_s_m : s_m + step_m);

@@ -44,6 +44,21 @@ double AttributeReader::number_or(pugi::xml_node node, const char* attribute, do
   return found ? number(node, attribute, found) : fallback;
 }
 
+double AttributeReader::station_m(pugi::xml_node node, const char* attribute) {
+  pugi::xml_attribute first;
+  return station_m(node, attribute, first);
+}
+
+double AttributeReader::station_m(pugi::xml_node node, const char* attribute,
+                                  pugi::xml_attribute& next) {
+  const double value_m = number(node, attribute, next);
+  if (std::abs(value_m) > kLongestRoadM) {
+    refuse(node, fmt::format("{} {:.3g} m", attribute, value_m), "at most 1e6 m",
+           "correct the station");
+  }
+  return value_m;
+}
+
 std::optional<int> AttributeReader::integer(pugi::xml_node node, const char* attribute) {
   const std::optional<int> value = xml.optional_integer(node, attribute);
   if (!value) keep_fault_of([&] { static_cast<void>(xml.integer(node, attribute)); });
@@ -64,11 +79,11 @@ void AttributeReader::refuse(pugi::xml_node node, const std::string& found,
 geometry::CubicRecord read_cubic(AttributeReader& in, pugi::xml_node node, const char* s_attribute,
                                  double s_add_m) {
   pugi::xml_attribute next;
-  const geometry::CubicRecord record{s_add_m + in.number(node, s_attribute, next),
+  const geometry::CubicRecord record{s_add_m + in.station_m(node, s_attribute, next),
                                      in.number(node, "a", next), in.number(node, "b", next),
                                      in.number(node, "c", next), in.number(node, "d", next)};
   constexpr double largest = 1e200;  // so that sums of them stay finite
-  for (const double value : {record.s_m, record.a, record.b, record.c, record.d}) {
+  for (const double value : {record.a, record.b, record.c, record.d}) {
     if (std::abs(value) > largest) {
       in.refuse(node, fmt::format("a coefficient of {:.3g}", value), "a value of a road",
                 "correct the value");

@@ -17,6 +17,9 @@
 
 namespace roadbed::map::opendrive {
 
+/// Longest road that is taken for one [m].
+inline constexpr double kLongestRoadM = 1e6;
+
 /// Reads attributes of elements, and goes on where they are broken: the first fault is kept, by
 /// which the file is then no map.
 class AttributeReader {
@@ -31,6 +34,10 @@ class AttributeReader {
 
   /// The same, `fallback` where the attribute is missing.
   double number_or(pugi::xml_node node, const char* attribute, double fallback);
+
+  /// Where something is along a road [m]: a fault, too, where no road is so long.
+  double station_m(pugi::xml_node node, const char* attribute);
+  double station_m(pugi::xml_node node, const char* attribute, pugi::xml_attribute& next);
 
   /// None, and a fault, where it is missing or no whole number.
   std::optional<int> integer(pugi::xml_node node, const char* attribute);

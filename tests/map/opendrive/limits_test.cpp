@@ -197,12 +197,17 @@ TEST(OpenDriveLimits, OfAnAttributeThatIsRepeatedTheFirstCounts) {
   EXPECT_THAT(outcome_of(made_document(made_road(road))), HasSubstr("read 2 lanes"));
 }
 
-TEST(OpenDriveLimits, AGeometryAtAStationBeyondAnyRoadIsRefused) {
+TEST(OpenDriveLimits, StationsBeyondAnyRoadAreRefused) {
   MadeRoad road;
+  road.lanes = made_section(0, made_lane(1), made_lane(-1)) +
+               made_section(1e300, made_lane(1), made_lane(-1));
+  EXPECT_THAT(outcome_of(made_document(made_road(road))),
+              HasSubstr("s 1e+300 m, needs at most 1e6 m"));
+  road = {};
   road.plan_view = R"(<geometry s="1e300" x="9" y="1" hdg="0.5" length="100">
     <poly3 a="0" b="0" c="1" d="0"/></geometry>)";
   EXPECT_THAT(outcome_of(made_document(made_road(road))),
-              HasSubstr("a place, station, length or curvature beyond that of any road"));
+              HasSubstr("s 1e+300 m, needs at most 1e6 m"));
 }
 
 TEST(OpenDriveLimits, TinyAndZeroLengthsAreFindings) {
