@@ -250,9 +250,9 @@ FieldValue value_of(const Part& part, const AskedLane& lane) {
 
 bool holds(const FieldValue& field, const std::string& relation, const std::string& value) {
   const bool is_said = !std::holds_alternative<std::monostate>(field);
-  if (value == "none" && relation == "=") return !is_said;
-  if (value == "none" && relation == "!=") return is_said;
+  if (value == "none" && !is_said) return relation == "=";
   if (const double* number = std::get_if<double>(&field)) {
+    if (value == "none") return relation == "!=";
     return holds(*number, relation, *number_of(value));
   }
   const auto* texts = std::get_if<std::vector<std::string>>(&field);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/opendrive/element_readers.h"
 #include "roadbed/map/opendrive/read.h"
 #include "roadbed/map/opendrive/rules/source.h"
@@ -258,7 +259,7 @@ class OpenDriveProposer {
                           End contact) const {
     const std::string link =
         fmt::format(R"(<{} elementType="road" elementId="{}" contactPoint="{}"/>)", link_name(end),
-                    to.record.node.attribute("id").value(), end_name(contact));
+                    xml_text(to.record.node.attribute("id").value()), end_name(contact));
     return with_link(road.record.node, end, link, road.record.node.first_child());
   }
 

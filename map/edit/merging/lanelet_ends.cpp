@@ -7,6 +7,7 @@
 #include <string>
 
 #include "roadbed/map/commonroad/document.h"
+#include "roadbed/map/edit/merging/near_ends.h"
 #include "roadbed/map/edit/xml_edit.h"
 
 namespace roadbed::map::inline edit::inline merging {
@@ -71,18 +72,20 @@ void link_lanelet_ends(const XmlDocument& xml, const std::vector<SourcedLanelet>
                 [](const BorderEnds& one) { return one.lanelet.node.child("predecessor"); });
   std::vector<BorderEnds> ends = ends_of(xml, lanelets, false);
   std::erase_if(ends, [](const BorderEnds& one) { return one.lanelet.node.child("successor"); });
+  std::vector<Vector2d> places;
+  for (const BorderEnds& start : starts) places.push_back(start.left);
+  NearEnds near(places, tolerance_m);
   for (const BorderEnds& end : ends) {
-    auto start =
-        std::lower_bound(starts.begin(), starts.end(), end.left.x() - tolerance_m,
-                         [](const BorderEnds& one, double x_m) { return one.left.x() < x_m; });
-    for (; start != starts.end() && start->left.x() <= end.left.x() + tolerance_m; ++start) {
+    for (const std::size_t i : near.around(end.left)) {
+      const BorderEnds& start = starts[i];
       const double gap_m =
-          std::max((start->left - end.left).norm(), (start->right - end.right).norm());
-      if (gap_m > tolerance_m || start->lanelet.source == end.lanelet.source) continue;
-      add_reference(end.lanelet.node, "successor", start->id());
-      add_reference(start->lanelet.node, "predecessor", end.id());
+          std::max((start.left - end.left).norm(), (start.right - end.right).norm());
+      if (gap_m > tolerance_m || start.lanelet.source == end.lanelet.source) continue;
+      near.add_pair();
+      add_reference(end.lanelet.node, "successor", start.id());
+      add_reference(start.lanelet.node, "predecessor", end.id());
       const Vector2d at = 0.5 * (end.left + end.right);
-      seams.push_back({"end of lanelet " + end.id(), "start of lanelet " + start->id(), gap_m,
+      seams.push_back({"end of lanelet " + end.id(), "start of lanelet " + start.id(), gap_m,
                        "linked", at.x(), at.y()});
     }
   }

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <utility>
 
-#include "roadbed/geometry/index/box_tree.h"
 #include "roadbed/map/edit/merging/lane_corners.h"
+#include "roadbed/map/edit/merging/near_ends.h"
 #include "roadbed/map/edit/plan_cut.h"
 #include "roadbed/map/edit/road_cut.h"
 #include "roadbed/map/edit/xml_edit.h"
@@ -176,11 +176,12 @@ class MeetingEnds {
  public:
   MeetingEnds(std::vector<RoadEnd> ends, double tolerance_m)
       : ends_(std::move(ends)), tolerance_m_(tolerance_m), near_(ends_.size()) {
-    std::vector<geometry::Box> boxes;
-    for (const RoadEnd& end : ends_) boxes.emplace_back(end.outwards.position());
-    const geometry::BoxTree tree(boxes);
-    for (std::size_t i = 0; i < ends_.size(); ++i) find_near(tree, i);
+    std::vector<Eigen::Vector2d> places;
+    for (const RoadEnd& end : ends_) places.push_back(end.outwards.position());
+    NearEnds near(places, tolerance_m);
+    for (std::size_t i = 0; i < ends_.size(); ++i) find_near(near, i);
     read_shapes();
+    for (std::size_t i = 0; i < ends_.size(); ++i) meeting_.push_back(count_meeting(i));
   }
 
   std::size_t size() const { return ends_.size(); }
@@ -191,20 +192,20 @@ class MeetingEnds {
     const ShapedEnd a = shaped(i), b = shaped(k);
     const double apart_m = space_between_m(a, b);
     if (apart_m > tolerance_m_) return {"heights do not meet", apart_m};
-    if (meeting(i) > 1 || meeting(k) > 1) return {"more than two ends meet", apart_m};
+    if (meeting_[i] > 1 || meeting_[k] > 1) return {"more than two ends meet", apart_m};
     if (!face(a.end, b.end)) return {"not in one direction", apart_m};
     return link(a, b, tolerance_m_);
   }
 
  private:
-  void find_near(const geometry::BoxTree& tree, std::size_t i) {
-    const Eigen::Vector2d reach = Eigen::Vector2d::Constant(tolerance_m_);
+  void find_near(NearEnds& all, std::size_t i) {
     const Eigen::Vector2d at = ends_[i].outwards.position();
-    tree.visit(geometry::Box(at - reach, at + reach), [&](std::size_t k) {
+    for (const std::size_t k : all.around(at)) {
       const bool near = (ends_[k].outwards.position() - at).norm() <= tolerance_m_;
-      if (near && ends_[k].source != ends_[i].source) near_[i].push_back(k);
-    });
-    std::sort(near_[i].begin(), near_[i].end());
+      if (!near || ends_[k].source == ends_[i].source) continue;
+      all.add_pair();
+      near_[i].push_back(k);
+    }
   }
 
   // Of those ends that others are near to.
@@ -224,7 +225,7 @@ class MeetingEnds {
   ShapedEnd shaped(std::size_t i) const { return {ends_[i], shapes_[i]}; }
 
   // How many meet an end, in the plane and in height.
-  std::ptrdiff_t meeting(std::size_t i) const {
+  std::ptrdiff_t count_meeting(std::size_t i) const {
     return std::count_if(near_[i].begin(), near_[i].end(), [&](std::size_t k) {
       return space_between_m(shaped(i), shaped(k)) <= tolerance_m_;
     });
@@ -234,6 +235,7 @@ class MeetingEnds {
   double tolerance_m_;
   std::vector<std::vector<std::size_t>> near_;
   std::vector<RoadEndShape> shapes_;
+  std::vector<std::ptrdiff_t> meeting_;
 };
 
 }  // namespace

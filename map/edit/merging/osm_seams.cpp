@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "roadbed/geometry/index/box_tree.h"
 #include "roadbed/map/edit/merging/lanelet_identities.h"
+#include "roadbed/map/edit/merging/near_ends.h"
 #include "roadbed/map/lanelet2/centreline.h"
 
 namespace roadbed::map::inline edit::inline merging {
@@ -103,20 +103,15 @@ std::map<Id, Id> nodes_to_join(const std::vector<Document>& files, const CalledI
   const auto name = [&](const LaneletEnd& end, std::uint32_t node) {
     return called(end.file, files[end.file].nodes[node].id);
   };
-  std::vector<geometry::Box> boxes;
-  for (const LaneletEnd& end : ends) boxes.emplace_back(place(end, end.left).in_source());
-  const geometry::BoxTree tree(boxes);
-  const Eigen::Vector2d reach = Eigen::Vector2d::Constant(tolerance_m);
+  std::vector<Eigen::Vector2d> places;
+  for (const LaneletEnd& end : ends) places.push_back(place(end, end.left).in_source());
+  NearEnds near(places, tolerance_m);
 
   std::map<Id, Id> one;
   for (const LaneletEnd& end : ends) {
     if (end.is_start) continue;
     const Eigen::Vector2d left = place(end, end.left).in_source();
-    std::vector<std::size_t> near;
-    tree.visit(geometry::Box(left - reach, left + reach),
-               [&](std::size_t i) { near.push_back(i); });
-    std::sort(near.begin(), near.end());
-    for (const std::size_t i : near) {
+    for (const std::size_t i : near.around(left)) {
       const LaneletEnd& next = ends[i];
       if (!next.is_start || next.file == end.file) continue;
       const double gap_m = std::max(distance_m(place(next, next.left), place(end, end.left)),
@@ -124,6 +119,7 @@ std::map<Id, Id> nodes_to_join(const std::vector<Document>& files, const CalledI
       const Id from_left = name(end, end.left), from_right = name(end, end.right),
                to_left = name(next, next.left), to_right = name(next, next.right);
       if (gap_m > tolerance_m || (from_left == to_left && from_right == to_right)) continue;
+      near.add_pair();
       const bool is_one = end.whole == next.whole;  // is put together anyhow
       seams.push_back({fmt::format("end of lanelet {}", end.whole),
                        fmt::format("start of lanelet {}", next.whole), gap_m,

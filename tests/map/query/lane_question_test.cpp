@@ -57,6 +57,21 @@ TEST(LaneQuestion, AsksForWhatTheMapSays) {
             lanes_where([](const Lane& l) { return l.participants.has(Participant::bicycle); }));
 }
 
+TEST(LaneQuestion, TakesNoneForNothingAndForWhatIsCalledSo) {
+  tests::MadeRoad road;
+  road.lanes = tests::made_section(0, R"(<lane id="1" type="none">
+    <width sOffset="0" a="3" b="0" c="0" d="0"/></lane>)",
+                                   tests::made_lane(-1));
+  const RoadMap map = tests::made_map(tests::made_road(road));
+  const auto called_none = [](const Lane& lane) { return to_string(lane.type) == "none"; };
+  ASSERT_EQ(lanes_where(called_none, map).size(), 1U);
+  EXPECT_EQ(ask("type = none", map), lanes_where(called_none, map));
+  EXPECT_EQ(ask("type != none", map), ask("not type = none", map));
+  EXPECT_EQ(ask("type in (none, driving)", map).size(), 2U);
+  EXPECT_EQ(ask("speed = none", map).size(), 2U);
+  EXPECT_TRUE(ask("speed != none", map).empty());
+}
+
 TEST(LaneQuestion, ComparesSpeedLimitsAsTheFileSaysThem) {
   for (int kmh = 1; kmh <= 130; ++kmh) {
     tests::MadeRoad road;

@@ -124,6 +124,16 @@ TEST(RepairOpenDrive, ReturnsARoadsLinkWithThoseOfItsLanes) {
   EXPECT_THAT(lane_links(file.bytes), ElementsAre("1/0/-1 2/0/-1", "2/0/1 1/0/1"));
 }
 
+TEST(RepairOpenDrive, ReturnsALinkToARoadWhoseIdXmlHasToEscape) {
+  const std::string lanes = lane_section(0, {{-1, 3.0}});
+  std::string text =
+      open_drive(straight_road(1, 0.0, kToRoad2, lanes) + straight_road(2, 60.0, "", lanes));
+  text.replace(text.find(R"(id="1")"), 6, R"(id="a&amp;&lt;b")");
+  const RepairedFile file = expect_links_added(text);
+  EXPECT_THAT(file.bytes, testing::HasSubstr(R"(elementId="a&amp;&lt;b")"));
+  EXPECT_THAT(lane_links(file.bytes), ElementsAre("a&<b/0/-1 2/0/-1"));
+}
+
 // Of the second road, whose lane 1 is half as wide and which has no lane 2.
 TEST(RepairOpenDrive, ReturnsARoadsLinkWithThoseLanesOnlyWhoseCornersMeet) {
   const std::string first = lane_section(0, {{1, 3.0}, {2, 2.0}, {-1, 3.0}});

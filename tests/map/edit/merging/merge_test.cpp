@@ -18,6 +18,7 @@
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map {
 namespace {
@@ -283,6 +284,30 @@ TEST(Merge, LinksNothingFartherThanTheTolerance) {
   EXPECT_TRUE(merged.seams.empty());
   const RoadMap road_map = parse_map(merged.bytes, "merged.xodr");
   EXPECT_TRUE(road_map.graph().of(LaneId{0}).successors.empty());
+}
+
+// Of n roads on each other in each of two files there are n² pairs of ends.
+TEST(Merge, RefusesRoadsOnEachOtherBeyondALimitOfTheirNumber) {
+  const auto merged = [](int roads) {
+    std::vector<MergeInput> files;
+    for (const double x : {0.0, 1e-5}) {
+      std::string text = R"(<OpenDRIVE><header revMajor="1" revMinor="6"/>)";
+      for (int i = 0; i < roads; ++i) {
+        text += fmt::format(
+            R"(<road id="{}" length="100" junction="-1"><planView><geometry s="0" x="{}" y="0" )"
+            R"(hdg="0" length="100"><line/></geometry></planView><lanes><laneSection s="0"><center>)"
+            R"(<lane id="0" type="none"/></center></laneSection></lanes></road>)",
+            i + (x > 0.0 ? roads : 0), x);
+      }
+      files.push_back({text + "</OpenDRIVE>", "stack.xodr"});
+    }
+    return tests::refusal_of([&] { merge(std::move(files)); });
+  };
+  EXPECT_EQ(merged(20), "accepted");
+  EXPECT_EQ(
+      merged(100),
+      "merge: 400 free ends, too many of which lie on each other, needs a few at most that "
+      "meet in one place; leave repeated roads or lanelets out, or give a smaller --tolerance");
 }
 
 TEST(Merge, WidensTheHeader) {
