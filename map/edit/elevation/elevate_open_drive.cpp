@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/geometry/index/box_tree.h"
 #include "roadbed/map/edit/elevation/elevate.h"
 #include "roadbed/map/edit/elevation/height_network.h"
 #include "roadbed/map/edit/elevation/profile_cubics.h"
@@ -128,13 +129,20 @@ class Elevator {
     }
     std::sort(ends.begin(), ends.end(),
               [](const End& a, const End& b) { return a.at.x() < b.at.x(); });
+    std::vector<geometry::Box> boxes;
+    for (const End& end : ends) boxes.emplace_back(end.at);
+    const geometry::BoxTree tree(boxes);
+    const Vector2d reach = Vector2d::Constant(kOneEndM);
     std::vector<bool> is_met(ends.size());
     for (std::size_t i = 0; i < ends.size(); ++i) {
       if (is_met[i]) continue;
+      std::vector<std::size_t> near;
+      tree.visit(geometry::Box(ends[i].at - reach, ends[i].at + reach), [&](std::size_t k) {
+        if (k > i && !is_met[k] && (ends[k].at - ends[i].at).norm() <= kOneEndM) near.push_back(k);
+      });
+      std::sort(near.begin(), near.end());
       std::vector<End> here{ends[i]};
-      for (std::size_t k = i + 1; k < ends.size() && ends[k].at.x() - ends[i].at.x() <= kOneEndM;
-           ++k) {
-        if (is_met[k] || (ends[k].at - ends[i].at).norm() > kOneEndM) continue;
+      for (const std::size_t k : near) {
         is_met[k] = true;
         here.push_back(ends[k]);
       }

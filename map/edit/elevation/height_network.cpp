@@ -1,11 +1,46 @@
 #include "roadbed/map/edit/elevation/height_network.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
 
+#include "roadbed/geometry/primitives/work_limit.h"
+#include "roadbed/map/files/input_error.h"
+
 namespace roadbed::map::inline edit::inline elevation {
+namespace {
+
+/// Says before it factorises how many steps that takes.
+class CountingSolver : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> {
+ public:
+  double steps() const {
+    double sum = 0.0;
+    const auto* begins = m_matrix.outerIndexPtr();
+    for (Eigen::Index i = 0; i < m_matrix.outerSize(); ++i) {
+      const double entries = begins[i + 1] - begins[i] + 1.0;
+      sum += entries * entries;
+    }
+    return sum;
+  }
+};
+
+// Roads that cross each other in the plane take some n^1.5; places that all are connected with each
+// other would take n³.
+void check_steps(double steps, std::size_t places) {
+  constexpr double kFactor = 200.0;  // these are short steps
+  if (steps <= kFactor * static_cast<double>(geometry::most_steps(places))) return;
+  throw InputError({.file = "elevation",
+                    .found = fmt::format("{} places without a measured height, which are connected "
+                                         "in more ways than those of roads",
+                                         places),
+                    .needed = "a network of roads, or ground under more of it",
+                    .remedy = "clip the map to where the ground was measured"});
+}
+
+}  // namespace
 
 void HeightNetwork::connect(std::size_t a, std::size_t b, double length_m) {
   constexpr double kLeastM = 1e-3;  // places at one place are one
@@ -56,7 +91,10 @@ std::vector<std::optional<double>> HeightNetwork::filled(
   }
   Eigen::SparseMatrix<double> matrix(count, count);
   matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+  CountingSolver solver;
+  solver.analyzePattern(matrix);
+  check_steps(solver.steps(), static_cast<std::size_t>(count));
+  solver.factorize(matrix);
   if (solver.info() != Eigen::Success) throw std::logic_error("HeightNetwork: not positive");
   const Eigen::VectorXd values = solver.solve(right);
   std::vector<std::optional<double>> all = known;

@@ -18,6 +18,7 @@ class HeightNetwork {
   void connect(std::size_t a, std::size_t b, double length_m);
 
   /// A value for each place; none where no line leads to a known one. O(N) where lines meet seldom.
+  /// @throws InputError where so many are connected with each other that it would take O(N³).
   std::vector<std::optional<double>> filled(const std::vector<std::optional<double>>& known) const;
 
  private:

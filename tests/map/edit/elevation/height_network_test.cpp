@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+
+#include "roadbed/map/files/input_error.h"
 
 namespace roadbed::map {
 namespace {
@@ -26,6 +29,21 @@ TEST(HeightNetwork, KnowsNothingOfWhatNoLineReaches) {
   EXPECT_NEAR(*filled[1], 1.0, 1e-12);
   EXPECT_FALSE(filled[2]);
   EXPECT_FALSE(filled[3]);
+}
+
+TEST(HeightNetwork, RefusesPlacesThatAreAllConnectedWithEachOther) {
+  const auto connected = [](std::size_t places, std::size_t reach) {
+    HeightNetwork network(places);
+    for (std::size_t a = 0; a < places; ++a) {
+      for (std::size_t b = a + 1; b < std::min(places, a + reach); ++b) network.connect(a, b, 1.0);
+    }
+    std::vector<std::optional<double>> known(places);
+    known[0] = 7.0;
+    return network.filled(known).back().value();
+  };
+  EXPECT_NEAR(connected(50'000, 3), 7.0, 1e-6);
+  EXPECT_NEAR(connected(300, 300), 7.0, 1e-9);
+  EXPECT_THROW(connected(1'200, 1'200), InputError);
 }
 
 // No other value anywhere leaves less of Σ (zᵢ − zⱼ)² / length.
