@@ -5,8 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
-#include <unordered_set>
+#include <unordered_map>
 
 namespace roadbed::map::inline occupancy::inline ground {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 using Eigen::Vector2d, Eigen::Vector3d;
 
 constexpr double kAroundM = 2.0;    // columns this near speak of a point
-constexpr double kTileM = 8.0;      // points in tiles near to those asked for are kept
+constexpr double kTileM = 2.0;      // or a column: points in tiles near to those asked for are kept
 constexpr double kLeastM = 0.25;    // side of a column
 constexpr double kLayerM = 0.2;     // thickness of what is lowest in a column
 constexpr double kOnGroundM = 0.1;  // off the plane, of columns that are on it
@@ -55,16 +56,15 @@ struct Plane {
 /// The lowest layer of each column near the points asked for.
 class LowestLayer {
  public:
-  LowestLayer(double side_m, std::span<const Vector2d> at) : columns_(side_m), wanted_(kTileM) {
+  LowestLayer(double side_m, std::span<const Vector2d> at)
+      : side_m_(side_m), tile_m_(std::max(kTileM, side_m)), columns_(side_m), wanted_(tile_m_) {
     if (at.empty()) return;
     origin_ << at.front().array().round(), 0.0;
+    const Vector2d reach = Vector2d::Constant(kAroundM + side_m);  // of whole columns
     for (const Vector2d& point : at) {
       const Vector2d local = point - origin_.head<2>();
-      for (const double x : {-kAroundM, kAroundM}) {
-        for (const double y : {-kAroundM, kAroundM}) {
-          wanted_cells_.insert(wanted_.cell(local + Vector2d(x, y)));
-        }
-      }
+      for_each_tile(local - reach, local + reach,
+                    [&](std::int64_t tile) { wanted_cells_.try_emplace(tile, kNoLevel); });
     }
   }
 
@@ -72,26 +72,38 @@ class LowestLayer {
     const Vector3d local = in_source - origin_;
     if (!wanted_cells_.contains(wanted_.cell(local.head<2>()))) return;
     points_.push_back({columns_.cell(local.head<2>()), local.cast<float>()});
+    if (points_.size() >= most_points_) drop_what_is_above();
   }
 
   // All of a level rectangle, however large: a point for each column at least.
   void add_level(const Vector2d& min, const Vector2d& max, double z_m) {
     const auto add_part = [&](const Vector2d& from, const Vector2d& to) {
-      for (double x = from.x() + 0.5 * kLeastM; x < to.x(); x += kLeastM) {
-        for (double y = from.y() + 0.5 * kLeastM; y < to.y(); y += kLeastM) add({x, y, z_m});
+      for (double x = from.x() + 0.5 * side_m_; x < to.x(); x += side_m_) {
+        for (double y = from.y() + 0.5 * side_m_; y < to.y(); y += side_m_) add({x, y, z_m});
       }
     };
-    if ((max - min).prod() < kTileM * kTileM) return add_part(min, max);
-    for (const std::int64_t cell : wanted_cells_) {
-      const Vector2d corner = origin_.head<2>() + kTileM * Grid::numbers(cell);
-      add_part(min.cwiseMax(corner), max.cwiseMin(corner + Vector2d::Constant(kTileM)));
+    if ((max - min).prod() < tile_m_ * tile_m_) return add_part(min, max);
+    const auto add_in = [&](std::int64_t tile, double& level_m) {
+      const Vector2d from = origin_.head<2>() + tile_m_ * Grid::numbers(tile);
+      const Vector2d to = from + Vector2d::Constant(tile_m_);
+      const bool is_all = (min.array() <= from.array()).all() && (to.array() <= max.array()).all();
+      if (is_all && z_m > level_m + kLayerM) return;  // above another at the same points
+      if (is_all) level_m = std::min(level_m, z_m);
+      add_part(min.cwiseMax(from), max.cwiseMin(to));
+    };
+    const Vector2d tiles = (max - min) / tile_m_;
+    if (tiles.prod() > static_cast<double>(wanted_cells_.size())) {
+      for (auto& [tile, level_m] : wanted_cells_) add_in(tile, level_m);
+      return;
     }
+    for_each_tile(min - origin_.head<2>(), max - origin_.head<2>(), [&](std::int64_t tile) {
+      const auto found = wanted_cells_.find(tile);
+      if (found != wanted_cells_.end()) add_in(tile, found->second);
+    });
   }
 
   void settle() {
-    std::sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) {
-      return a.column != b.column ? a.column < b.column : a.local.z() < b.local.z();
-    });
+    sort();
     std::size_t kept = 0;
     for (std::size_t i = 0; i < points_.size();) {
       const Point lowest = points_[i];
@@ -132,10 +144,41 @@ class LowestLayer {
     Eigen::Vector3f local;
   };
 
+  static constexpr double kNoLevel = std::numeric_limits<double>::infinity();
+
+  template <typename F>
+  void for_each_tile(const Vector2d& from, const Vector2d& to, const F& f) const {
+    for (auto y = wanted_.number(from.y()); y <= wanted_.number(to.y()); ++y) {
+      for (auto x = wanted_.number(from.x()); x <= wanted_.number(to.x()); ++x) f(Grid::cell(x, y));
+    }
+  }
+
+  void sort() {
+    std::sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) {
+      return a.column != b.column ? a.column < b.column : a.local.z() < b.local.z();
+    });
+  }
+
+  // What is above a column's lowest layer now is above it at the end.
+  void drop_what_is_above() {
+    sort();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < points_.size();) {
+      const Point lowest = points_[i];
+      for (; i < points_.size() && points_[i].column == lowest.column; ++i) {
+        if (points_[i].local.z() <= lowest.local.z() + kLayerM) points_[kept++] = points_[i];
+      }
+    }
+    points_.resize(kept);
+    most_points_ = std::max(most_points_, 2 * kept);
+  }
+
+  double side_m_, tile_m_;
   Grid columns_, wanted_;
   Vector3d origin_{0, 0, 0};
-  std::unordered_set<std::int64_t> wanted_cells_;
+  std::unordered_map<std::int64_t, double> wanted_cells_;  // and the lowest level that covers each
   std::vector<Point> points_;
+  std::size_t most_points_ = 1'000'000;  // until those above others are dropped
 };
 
 Plane level_at_quarter(const std::vector<Vector3d>& columns) {
