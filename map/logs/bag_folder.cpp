@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <set>
+#include <string>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
@@ -40,6 +42,7 @@ std::vector<fs::path> files_in_metadata(std::string_view text, const fs::path& f
                       .remedy = "make it anew by `ros2 bag reindex`, or name the bag's file"});
   };
   std::vector<fs::path> files;
+  std::set<std::string> names;
   bool is_listing = false;
   for (std::string_view rest = text; !rest.empty();) {
     const std::string_view line = trimmed(take_line(rest), " \t\r");
@@ -50,6 +53,7 @@ std::vector<fs::path> files_in_metadata(std::string_view text, const fs::path& f
       if (name.empty() || name.is_absolute() || std::ranges::find(name, "..") != name.end()) {
         refuse("\"" + name.string() + "\"");
       }
+      if (!names.insert(name.string()).second) refuse("\"" + one_line(name.string()) + "\" again");
       files.push_back(folder / name);
     } else if (is_listing) {
       break;

@@ -111,9 +111,7 @@ void LogPoses::finish() {
   for (auto& [name, poses] : by_topic_) {
     poses.above.sort();
     poses.below = transforms_.below(name);
-    TransformTree further = *poses.below;
-    further.remove(poses.child);  // the topic says where that is
-    poses.above.merge(std::move(further));
+    poses.above.go_on_in(poses.below, poses.child);  // the topic says where that is
   }
 }
 

@@ -115,9 +115,20 @@ class McapReader {
     if (kind == McapRecord{}) fields.refuse("a record of kind 0", "a kind that MCAP has");
   }
 
+  // Channels name a schema by a number, and each keeps its name.
+  static std::string name_in(Fields& fields) {
+    constexpr std::size_t longest = 512;
+    std::string name = one_line(std::string(fields.text()));
+    if (name.size() > longest) {
+      fields.refuse(fmt::format("a name of {} bytes", name.size()),
+                    fmt::format("at most {}", longest));
+    }
+    return name;
+  }
+
   void schema(Fields& fields) {
     const auto id = fields.number<std::uint16_t>();
-    types_[id] = one_line(std::string(fields.text()));
+    types_[id] = name_in(fields);
   }
 
   void channel(Fields& fields) {
@@ -127,9 +138,9 @@ class McapReader {
     if (schema != 0 && type == types_.end()) {
       fields.refuse(fmt::format("a channel of schema {}", schema), "that schema before it");
     }
-    LogTopic topic{.name = one_line(std::string(fields.text())),
+    LogTopic topic{.name = name_in(fields),
                    .type = schema == 0 ? std::string() : type->second,
-                   .encoding = one_line(std::string(fields.text()))};
+                   .encoding = name_in(fields)};
     const auto known = channels_.find(id);
     if (known != channels_.end()) {  // told again in each chunk
       if (known->second.topic.name != topic.name || known->second.topic.type != topic.type) {

@@ -54,6 +54,21 @@ void TransformTree::merge(TransformTree other) {
   }
 }
 
+void TransformTree::go_on_in(std::shared_ptr<const TransformTree> further, const std::string& but) {
+  for (auto& [child, own] : edges_) {
+    const Edge* other = child == but ? nullptr : further->find(child);
+    if (other != nullptr && other->parent != own.parent) own.other_parent = other->parent;
+  }
+  further_ = std::move(further);
+  not_further_ = but;
+}
+
+const TransformTree::Edge* TransformTree::find(const std::string& child) const {
+  const auto found = edges_.find(child);
+  if (found != edges_.end()) return &found->second;
+  return further_ && child != not_further_ ? further_->find(child) : nullptr;
+}
+
 std::vector<std::string> TransformTree::way_up(const std::string& child, const std::string& file,
                                                const std::string& option,
                                                const std::string& top) const {
@@ -67,14 +82,14 @@ std::vector<std::string> TransformTree::way_up(const std::string& child, const s
   };
   std::vector<std::string> way;
   std::string frame = child;
-  for (auto edge = edges_.find(frame); frame != top && frame != "map" && edge != edges_.end();
-       edge = edges_.find(frame)) {
+  for (const Edge* edge = find(frame); frame != top && frame != "map" && edge != nullptr;
+       edge = find(frame)) {
     way.push_back(frame);
-    if (way.size() > edges_.size()) refuse(child, "stands in itself", "frames without a circle");
+    if (way.size() > size()) refuse(child, "stands in itself", "frames without a circle");
     if (way.size() > kMostFrames) {
       refuse(child, fmt::format("stands in more than {} frames", kMostFrames), "a shorter chain");
     }
-    const auto& [parent, other] = std::tie(edge->second.parent, edge->second.other_parent);
+    const auto& [parent, other] = std::tie(edge->parent, edge->other_parent);
     if (!other.empty()) refuse(frame, "stands in " + parent + " and in " + other, "one parent");
     frame = parent;
   }
@@ -92,7 +107,7 @@ std::optional<Eigen::Isometry3d> TransformTree::at(const std::vector<std::string
                                                    std::int64_t stamp_ns) const {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (const std::string& child : way) {
-    const auto step = edges_.at(child).at(stamp_ns);
+    const auto step = edge_of(child).at(stamp_ns);
     if (!step) return std::nullopt;
     pose = *step * pose;
   }
@@ -102,19 +117,19 @@ std::optional<Eigen::Isometry3d> TransformTree::at(const std::vector<std::string
 std::vector<std::string>::const_iterator TransformTree::lowest_moving(
     const std::vector<std::string>& way) const {
   const auto moves = [&](const std::string& child) {
-    const Edge& edge = edges_.at(child);
-    return !edge.is_static && !edge.is_held;
+    const Edge& one = edge_of(child);
+    return !one.is_static && !one.is_held;
   };
   const auto moving = std::ranges::find_if(way, moves);
   if (moving != way.end()) return moving;
-  return std::ranges::find_if(way, [&](const auto& child) { return !edges_.at(child).is_static; });
+  return std::ranges::find_if(way, [&](const auto& child) { return !edge_of(child).is_static; });
 }
 
 NotedPoses TransformTree::poses(const std::vector<std::string>& way) const {
   NotedPoses found;
   const auto moving = lowest_moving(way);
   if (moving == way.end()) return found;
-  const std::vector<TimedPose>& all = edges_.at(*moving).poses;
+  const std::vector<TimedPose>& all = edge_of(*moving).poses;
   for (const TimedPose& at_stamp : all) {
     if (const auto pose = at(way, at_stamp.stamp_ns)) {
       found.poses.push_back({at_stamp.stamp_ns, *pose, at_stamp.speed_mps});
@@ -127,12 +142,12 @@ NotedPoses TransformTree::poses(const std::vector<std::string>& way) const {
 
 bool TransformTree::leads_to_world(const std::vector<std::string>& way) const {
   if (way.empty()) return false;
-  return edges_.at(way.back()).parent == "map" || lowest_moving(way) != way.end();
+  return edge_of(way.back()).parent == "map" || lowest_moving(way) != way.end();
 }
 
 const std::string& TransformTree::topic_of(const std::vector<std::string>& way) const {
   const auto moving = lowest_moving(way);
-  return edges_.at(moving == way.end() ? way.front() : *moving).topic;
+  return edge_of(moving == way.end() ? way.front() : *moving).topic;
 }
 
 std::vector<std::string> TransformTree::children() const {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,8 +42,11 @@ class TransformTree {
   /// Takes the frames from another one that it does not have.
   void merge(TransformTree other);
 
-  void remove(const std::string& child) { edges_.erase(child); }
-  bool has(const std::string& child) const { return edges_.contains(child); }
+  /// Goes on in another tree, which is not copied, for frames that this one does not have.
+  /// @param but  a frame of it that is none.
+  void go_on_in(std::shared_ptr<const TransformTree> further, const std::string& but);
+
+  bool has(const std::string& child) const { return find(child) != nullptr; }
 
   /// From a frame up to `top`, to `map` or to the uppermost frame: names of the children on the
   /// way.
@@ -71,7 +75,7 @@ class TransformTree {
   const std::string& topic_of(const std::vector<std::string>& way) const;
 
   /// @pre has(child).
-  const std::string& parent_of(const std::string& child) const { return edges_.at(child).parent; }
+  const std::string& parent_of(const std::string& child) const { return edge_of(child).parent; }
 
   std::vector<std::string> children() const;
 
@@ -87,7 +91,15 @@ class TransformTree {
   };
   std::vector<std::string>::const_iterator lowest_moving(const std::vector<std::string>& way) const;
 
+  /// Null if there is none.
+  const Edge* find(const std::string& child) const;
+  /// @pre has(child).
+  const Edge& edge_of(const std::string& child) const { return *find(child); }
+  std::size_t size() const { return edges_.size() + (further_ ? further_->size() : 0); }
+
   std::map<std::string, Edge> edges_;
+  std::shared_ptr<const TransformTree> further_;
+  std::string not_further_;
 };
 
 /// The pose at a time between two of a list in order of time; none outside.
