@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "roadbed/map/files/input_error.h"
 
 namespace roadbed::map {
@@ -28,6 +32,22 @@ TEST(TransformTree, IsNoDeeperThanAnyVehicleIs) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("frame f300: stands in more than 256 frames"));
   }
+}
+
+// Above f3 is what the first tree says, below and beside it what the second says.
+TEST(TransformTree, GoesOnInAnotherForFramesThatItDoesNotHave) {
+  const auto below = std::make_shared<TransformTree>(chain_of(5));
+  TransformTree above;
+  above.add({.parent = "world", .child = "f3", .child_in_parent = {}}, "poses", false);
+  above.sort();
+  TransformTree without = above;
+  above.go_on_in(below, "f3");
+  EXPECT_EQ(above.way_up("f5", "log", "--topic"), (std::vector<std::string>{"f5", "f4", "f3"}));
+  EXPECT_EQ(above.parent_of("f3"), "world");
+  EXPECT_EQ(above.way_up("f2", "log", "--topic"), (std::vector<std::string>{"f2", "f1"}));
+  without.go_on_in(below, "f4");  // which now says something else of f3
+  EXPECT_FALSE(without.has("f4"));
+  EXPECT_THROW(without.way_up("f3", "log", "--topic"), InputError);
 }
 
 }  // namespace
