@@ -127,6 +127,7 @@ geometry::PlanPiece plan_piece(pugi::xml_node geometry) {
 geometry::Pose2 reference_pose(pugi::xml_node road, double s_m) {
   pugi::xml_node holding;
   for (const auto geometry : road.child("planView").children("geometry")) {
+    if (number(geometry, "length") < kNoCurveM) continue;  // as those who read maps leave it out
     if (!holding || number(geometry, "s") <= s_m) holding = geometry;
   }
   return holding ? geometry::plan_point(plan_piece(holding), s_m).pose : geometry::Pose2{};

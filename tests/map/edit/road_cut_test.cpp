@@ -46,6 +46,18 @@ TEST(RoadCut, IsWhereTheWholeRoadIs) {
   }
 }
 
+// A curve whose parameter runs to 1 over no length is nowhere.
+TEST(RoadCut, EndsWhereTheLastCurveOfSomeLengthDoes) {
+  const XmlDocument xml{R"(<OpenDRIVE><road length="10"><planView>
+      <geometry s="0" x="1" y="2" hdg="0" length="10"><line/></geometry>
+      <geometry s="10" x="100" y="100" hdg="0" length="0">
+        <paramPoly3 aU="0" bU="1" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0" pRange="normalized"/>
+      </geometry></planView></road></OpenDRIVE>)",
+                        "ends.xodr"};
+  const auto end = reference_pose(road_of(xml), 10.0).position();
+  EXPECT_NEAR((end - Eigen::Vector2d(11.0, 2.0)).norm(), 0.0, 1e-12);
+}
+
 // Widths, lane offset, elevation and superelevation: borders of the cut road lie on those of the
 // whole one, which are sampled to within a centimetre.
 TEST(RoadCut, KeepsItsBordersWhereTheyWere) {
