@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/map/storage/output_folder.h"
 #include "roadbed/tools/cli/command_page.h"
@@ -77,8 +78,8 @@ class HelpCommand : public Command {
       const auto part = std::ranges::find(page->parts, word,
                                           [](const CommandPage& one) { return one.words.back(); });
       if (part == page->parts.end()) {
-        fmt::print(streams.err, "roadbed: {} has no command {}; see: {} --help\n", line, word,
-                   line);
+        fmt::print(streams.err, "roadbed: {} has no command {}; see: {} --help\n", line,
+                   map::one_line(word), line);
         return Exit::usage;
       }
       command = &command->parts()[static_cast<std::size_t>(part - page->parts.begin())];

@@ -46,4 +46,14 @@ std::string schema_fault(sqlite3* database) {
   return one_line(sqlite3_errmsg(database));
 }
 
+std::size_t pages_looked_up(sqlite3* database) {
+  std::size_t sum = 0;
+  for (const int which : {SQLITE_DBSTATUS_CACHE_HIT, SQLITE_DBSTATUS_CACHE_MISS}) {
+    int count = 0, unused = 0;
+    sqlite3_db_status(database, which, &count, &unused, 0);
+    sum += static_cast<std::size_t>(count);
+  }
+  return sum;
+}
+
 }  // namespace roadbed::map::files

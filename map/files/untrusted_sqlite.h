@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -20,5 +21,15 @@ void distrust(sqlite3* database, std::uint64_t file_size, geometry::WorkBudget& 
 /// read, within one step and for as long as it likes; or what SQLite says of the schema. Empty:
 /// nothing does. O(schema).
 std::string schema_fault(sqlite3* database);
+
+/// Pages that were looked up since the database was opened, again each time: what rows cost whose
+/// branches or overflowing bytes share pages, which SQLite follows within one step.
+std::size_t pages_looked_up(sqlite3* database);
+
+/// How many of them reading each row of a file of such size once can take.
+constexpr std::size_t most_pages_looked_up(std::uint64_t file_size) {
+  constexpr std::uint64_t page = 4096;
+  return geometry::most_steps(file_size / page);
+}
 
 }  // namespace roadbed::map::files

@@ -104,7 +104,7 @@ class Database {
   /// The bytes stay where they are while it is open.
   explicit Database(std::string& bytes)
       : steps_(geometry::most_steps(bytes.size() / kLeastRow)),
-        memory_(geometry::most_bytes_read(bytes.size())) {
+        memory_(kFewBytes + kBytesPerByte * bytes.size()) {
     sqlite3* opened = nullptr;
     const int status = sqlite3_open_v2(":memory:", &opened, SQLITE_OPEN_READWRITE, nullptr);
     database_.reset(opened);
@@ -147,12 +147,18 @@ class Database {
   };
 
   static constexpr std::size_t kLeastRow = 64;  // bytes, with its shape
+  // Of memory: a column of a row that holds one digit takes more than its byte.
+  static constexpr std::size_t kFewBytes = 64'000'000, kBytesPerByte = 16;
 
-  // Pages that several branches of a damaged tree name are rows without end.
+  // Pages that several branches of a damaged tree name are rows without end, and what a column
+  // holds where nothing was written is stored once for all rows.
   void count(sqlite3_stmt* row) {
     for (int i = 0; i < sqlite3_column_count(row); ++i) {
       const int type = sqlite3_column_type(row, i);
-      std::size_t bytes = 1 + std::strlen(sqlite3_column_name(row, i));
+      std::size_t bytes = 1;
+      if (type != SQLITE_NULL) {
+        bytes = sizeof(Attributes::value_type) + std::strlen(sqlite3_column_name(row, i));
+      }
       if (type == SQLITE_TEXT || type == SQLITE_BLOB) {
         bytes += static_cast<std::size_t>(sqlite3_column_bytes(row, i));
       }
@@ -162,6 +168,10 @@ class Database {
 
   void check(int status) const {
     if (status == SQLITE_OK) return;
+    if (status == SQLITE_INTERRUPT) {
+      throw Refusal{"rows that take longer to read than its size can ask for",
+                    "a whole GeoPackage"};
+    }
     const char* why = database_ ? sqlite3_errmsg(database_.get()) : sqlite3_errstr(status);
     throw Refusal{fmt::format("SQLite says: {}", one_line(why)), "a whole GeoPackage"};
   }

@@ -70,7 +70,7 @@ class Builder {
     if (mapping_.drawing == Drawing::borders) {
       pair_borders(table.rows);
     } else {
-      for (const Row& row : table.rows) add_row(row);
+      for (Row& row : table.rows) add_row(row);
     }
     if (parts_.lanes.empty()) {
       refuse(parts_.remarks.empty() ? "no line or polygon" : parts_.remarks.back().message,
@@ -170,7 +170,7 @@ class Builder {
     return number.value ? number.value : number_in(row.value(number.column));
   }
 
-  void add_row(const Row& row) {
+  void add_row(Row& row) {
     if (row.is_ring != (mapping_.drawing == Drawing::polygon)) {
       return leave_out(row.id, row.is_ring ? "it is a polygon, not a line" : "it is no polygon");
     }
@@ -190,10 +190,10 @@ class Builder {
     add_lane(row, *borders);
   }
 
-  void pair_borders(const std::vector<Row>& rows) {
-    std::unordered_map<std::string, std::pair<const Row*, const Row*>> sides;
+  void pair_borders(std::vector<Row>& rows) {
+    std::unordered_map<std::string, std::pair<Row*, Row*>> sides;
     std::vector<std::string> order;
-    for (const Row& row : rows) {
+    for (Row& row : rows) {
       const std::string id = id_of(row);
       const std::string_view side = row.value(mapping_.side);
       if (side != "left" && side != "right") {
@@ -202,7 +202,7 @@ class Builder {
       }
       auto& [left, right] = sides[id];
       if (left == nullptr && right == nullptr) order.push_back(id);
-      const Row*& border = side == "left" ? left : right;
+      Row*& border = side == "left" ? left : right;
       if (border != nullptr) leave_out(row.id, fmt::format("lane {} has a {} border", id, side));
       if (border == nullptr) border = &row;
     }
@@ -216,7 +216,8 @@ class Builder {
     }
   }
 
-  void add_lane(const Row& row, const Borders& borders) {
+  // Takes what the columns of the row say with it.
+  void add_lane(Row& row, const Borders& borders) {
     const auto& [left, right, centre] = borders;
     const std::string id = id_of(row);
     if (id.empty()) return leave_out(row.id, "it has no id");
@@ -233,9 +234,9 @@ class Builder {
                                 "its left border lies to the right of its right one; swap them"});
     }
     set_use(row, lane);
-    lane.attributes = row.values;
     lane_of_id_.emplace(id, lane.id);
     successors_.push_back(ids_in(row.value(mapping_.successors)));
+    lane.attributes = std::move(row.values);
     parts_.lanes.push_back(std::move(lane));
   }
 

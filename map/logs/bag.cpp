@@ -98,6 +98,9 @@ class BagReader {
     std::size_t bytes = 1;
     for (const std::string_view cell : row) bytes += cell.size();
     if (!unread_.spend(bytes)) refuse("", fmt::format("more rows than {} bytes can hold", size_));
+    if (pages_looked_up(database_.get()) > most_pages_looked_up(size_)) {
+      refuse("", "rows that share pages");
+    }
   }
 
   void take(const LogTopic& topic, const Statement& row) {

@@ -39,8 +39,8 @@ class FeatherReader {
   FeatherReader(std::string_view bytes, const std::string& name)
       : bytes_(bytes),
         name_(name),
-        unpacked_left_(most_unpacked(bytes.size())),
-        rows_left_(most_unpacked(bytes.size())) {}
+        unpacked_left_(most_unpacked_of_rows(bytes.size())),
+        rows_left_(most_unpacked_of_rows(bytes.size())) {}
 
   std::vector<FeatherColumn> read(std::vector<std::string> wanted,
                                   const std::vector<std::string>& texts) {
@@ -180,7 +180,7 @@ class FeatherReader {
     }
     // Of all batches: the footer may name one of them many times.
     const std::size_t row_bytes = place.kind == kTextType ? sizeof(std::string) : sizeof(double);
-    if (rows > most_unpacked(bytes_.size()) || !rows_left_.spend(rows * row_bytes)) {
+    if (rows > most_unpacked_of_rows(bytes_.size()) || !rows_left_.spend(rows * row_bytes)) {
       refuse(
           element,
           fmt::format("has {} rows, with those before too many for {} bytes", rows, bytes_.size()),

@@ -19,8 +19,8 @@ bool begins_as_log(std::string_view bytes) {
 void read_packed(const fs::path& file, const LogVisitor& visitor) {
   LogBytes packed(file);
   const std::string name = input_name(file);
-  parse_log(unpacked(packed.read(0, packed.size()), name, most_unpacked(packed.size())), name,
-            visitor);
+  parse_log(unpacked(packed.read(0, packed.size()), name, most_unpacked_of_rows(packed.size())),
+            name, visitor);
 }
 
 void read_log_file(const fs::path& file, const LogVisitor& visitor) {

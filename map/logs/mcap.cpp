@@ -199,9 +199,9 @@ class McapReader {
     if (packing != "lz4" && packing != "zstd") {
       fields.refuse("a chunk packed by " + one_line(packing), "none, lz4 or zstd");
     }
-    if (size > most_unpacked(file_.size())) {
+    if (size > most_unpacked_of_rows(file_.size())) {
       fields.refuse(fmt::format("a chunk of {} bytes, packed in {}", size, packed.size()),
-                    fmt::format("at most {}", most_unpacked(file_.size())));
+                    fmt::format("at most {}", most_unpacked_of_rows(file_.size())));
     }
     if (!unpacked_.spend(size)) {
       fields.refuse(fmt::format("chunks of more than {} bytes", most_unpacked_in_all(file_.size())),

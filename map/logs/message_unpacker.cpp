@@ -17,7 +17,8 @@ MessageUnpacker::MessageUnpacker(std::string file, std::uint64_t file_bytes)
 std::string_view MessageUnpacker::unpacked(const LogTopic& topic, std::string_view bytes,
                                            const std::string& place) {
   if (topic.encoding != "cdr" || !is_packed(bytes)) return bytes;
-  message_ = files::unpacked(bytes, file_ + ":" + place, most_unpacked(file_bytes_) / 2);
+  message_ =
+      files::unpacked(bytes, file_ + ":" + place, files::most_unpacked_of_rows(file_bytes_) / 2);
   if (left_.spend(message_.size())) return message_;
   throw InputError(
       {.file = file_,

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "roadbed/map/files/unpack.h"
+
 namespace roadbed::map::inline logs {
 
 /// How a block of a file is packed.
@@ -15,15 +17,10 @@ enum class BlockPacking { lz4, zstandard };
 std::string unpack_block(std::string_view packed, BlockPacking packing, std::uint64_t size,
                          std::string& into);
 
-/// The most bytes that a block of a file may unpack to, so that a claim takes no more memory than
-/// a file of its size is worth.
-constexpr std::uint64_t most_unpacked(std::uint64_t file_bytes) {
-  return (std::uint64_t{128} << 20) + 4 * file_bytes;
-}
-
-/// The same of all blocks of a log, which are unpacked one after the other: time.
+/// The most bytes that all blocks of a file may unpack to, one after the other: time. One of them
+/// may have as many as any packed input of rows (files::most_unpacked_of_rows): memory.
 constexpr std::uint64_t most_unpacked_in_all(std::uint64_t file_bytes) {
-  return most_unpacked(file_bytes) + 60 * file_bytes;
+  return files::most_unpacked_of_rows(file_bytes) + 60 * file_bytes;
 }
 
 }  // namespace roadbed::map::logs

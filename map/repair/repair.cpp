@@ -70,6 +70,16 @@ class Mender {
 
   static Key key_of(const Repair& repair) { return {repair.rule, repair.element, repair.what}; }
 
+  std::vector<Repair> proposed() const {
+    try {
+      return propose_(file_.bytes, name_, options_);
+    } catch (const InputError& error) {  // of an element, who reads it knows no file
+      InputError::Parts parts = error.parts();
+      parts.file = name_;
+      throw InputError(parts);
+    }
+  }
+
   /// Proposals that have not been tried and do not overlap.
   std::vector<Repair> fresh() const {
     std::vector<Repair> kept;
@@ -85,7 +95,7 @@ class Mender {
       const auto place = places.upper_bound(edit.at);
       return place == places.end() || *place >= edit.at + edit.size;
     };
-    for (Repair& repair : propose_(file_.bytes, name_, options_)) {
+    for (Repair& repair : proposed()) {
       if (tried_.contains(key_of(repair))) continue;
       if (!std::ranges::all_of(repair.edits, is_free)) continue;
       for (const TextEdit& edit : repair.edits) {

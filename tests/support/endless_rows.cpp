@@ -1,20 +1,31 @@
 #include "roadbed/tests/support/endless_rows.h"
 
+#include <gtest/gtest.h>
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
 namespace roadbed::tests {
 namespace {
 
-std::size_t root_page(std::string database, const std::string& table) {
-  if (table == "sqlite_schema") return 1;
+// The copy that it reads and writes is SQLite's.
+sqlite3* opened(const std::string& database) {
   sqlite3* file = nullptr;
   sqlite3_open(":memory:", &file);
+  if (database.empty()) return file;
+  auto* copy = static_cast<unsigned char*>(sqlite3_malloc64(database.size()));
+  std::ranges::copy(database, copy);
   const auto size = static_cast<sqlite3_int64>(database.size());
-  sqlite3_deserialize(file, "main", reinterpret_cast<unsigned char*>(database.data()), size, size,
-                      SQLITE_DESERIALIZE_READONLY);
+  sqlite3_deserialize(file, "main", copy, size, size,
+                      SQLITE_DESERIALIZE_FREEONCLOSE | SQLITE_DESERIALIZE_RESIZEABLE);
+  return file;
+}
+
+std::size_t root_page(const std::string& database, const std::string& table) {
+  if (table == "sqlite_schema") return 1;
+  sqlite3* file = opened(database);
   sqlite3_stmt* question = nullptr;
   const std::string text = "select rootpage from sqlite_schema where name = '" + table + "'";
   sqlite3_prepare_v2(file, text.c_str(), -1, &question, nullptr);
@@ -32,6 +43,20 @@ std::string big_endian(std::size_t value, int bytes) {
 }
 
 }  // namespace
+
+std::string database_after(const std::string& statements, const std::string& from) {
+  sqlite3* file = opened(from);
+  char* fault = nullptr;
+  sqlite3_exec(file, statements.c_str(), nullptr, nullptr, &fault);
+  EXPECT_EQ(fault, nullptr) << fault;
+  sqlite3_free(fault);
+  sqlite3_int64 size = 0;
+  unsigned char* image = sqlite3_serialize(file, "main", &size, 0);
+  std::string bytes(reinterpret_cast<const char*>(image), static_cast<std::size_t>(size));
+  sqlite3_free(image);
+  sqlite3_close(file);
+  return bytes;
+}
 
 // [https://www.sqlite.org/fileformat2.html, 1.6]
 std::string with_endless_rows(std::string database, const std::string& table) {

@@ -71,6 +71,23 @@ TEST(SumoCommand, SeveralFilesAreNoStandardOutput) {
   EXPECT_EQ(run_roadbed({"export", kTown, "-o", "-", "--format", "nod.xml"}).status, 2);
 }
 
+// Which its configuration lists with commas between.
+TEST(SumoCommand, NamesWithCommasAreRefused) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(run_roadbed({"export", kTown, "-o", folder / "a,b.nod.xml"}).status, 2);
+  EXPECT_EQ(run_roadbed({"export", kTown, "-o", folder / "a,b.svg"}).status, 0);
+}
+
+TEST(SumoCommand, ASystemThatProjDoesNotKnowIsRefusedAsByAnyOutput) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.nod.xml", "a.svg", "a.geojson"}) {
+    const ProgramRun run =
+        run_roadbed({"export", kTown, "-o", folder / name, "--crs", "no system"});
+    EXPECT_EQ(run.status, 3) << name;
+    EXPECT_NE(run.err.find("PROJ cannot use it"), std::string::npos) << run.err;
+  }
+}
+
 TEST(SumoCommand, SaysInALineWhatToDoWithoutNetconvert) {
   const TemporaryFolder folder;
   const Variable path("PATH", folder.path().string()), home("SUMO_HOME", "");

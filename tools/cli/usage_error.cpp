@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/map/files/visible_text.h"
+
 namespace roadbed::tools::inline cli {
 namespace {
 
@@ -56,7 +58,7 @@ std::vector<std::string> names_of_options(const CLI::App& app) {
 std::string unknown_word(const CLI::App& app, std::vector<std::string> rest) {
   std::stable_partition(rest.begin(), rest.end(),
                         [](const std::string& word) { return word.starts_with('-'); });
-  const std::string& word = rest.front();
+  const std::string word = map::one_line(rest.front());
   if (word.starts_with('-')) {
     const std::string name = word.substr(0, word.find('='));
     return fmt::format("there is no option {}{}", name, suggestion(name, names_of_options(app)));
@@ -76,7 +78,7 @@ std::string usage_message(const CLI::App* program, const CLI::Error& error) {
     line += ' ' + app->get_name();
   }
   std::string fault = error.what();
-  std::ranges::replace(fault, '\n', ' ');
+  map::make_one_line(fault);
   const std::vector<std::string> rest = program->remaining(true);
   const bool lacks_command = !app->get_subcommands({}).empty();
   if (!rest.empty() &&

@@ -1,5 +1,6 @@
 #include "roadbed/map/lane_table/read.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -183,6 +184,33 @@ TEST(LaneTable, AGeoPackageWithMoreRowsThanItCanHoldIsRefused) {
     const std::string bytes = tests::with_endless_rows(whole, table);
     EXPECT_THROW(lane_table::read_geopackage(bytes, "f.gpkg", ""), InputError) << table;
   }
+}
+
+// What a column holds where nothing was written is stored once, of each row read.
+TEST(LaneTable, AGeoPackageWhoseRowsAreMostlyWhatColumnsHoldAnywayIsRefused) {
+  const RoadMap ramp = load_map(tests::data_folder() / "ramp.xodr");
+  std::vector<Layer> layers{make_layer(ramp, "centrelines")};
+  layers[0].features.resize(1);
+  const std::string whole = write_geopackage(layers, "EPSG:25832");
+  const auto with_rows = [&](int rows) {
+    const std::string line =
+        "475000010000000001"
+        "0200000002000000" +
+        std::string(32, '0') + "000000000000F03F0000000000000000";
+    std::string statements = fmt::format(
+        "drop trigger rtree_centrelines_geom_insert;"
+        "with recursive n(i) as (select 1 union all select i + 1 from n where i < {}) insert into "
+        "centrelines(geom) select x'{}' from n;",
+        rows, line);
+    for (int i = 0; i < 30; ++i) {
+      statements +=
+          fmt::format("alter table centrelines add column c{} text default '{:x>100}';", i, "");
+    }
+    return tests::database_after(statements, whole);
+  };
+  EXPECT_EQ(lane_table::read_geopackage(with_rows(1'000), "f.gpkg", "").rows.size(), 1'001u);
+  EXPECT_THAT(tests::refusal_of([&] { lane_table::read_geopackage(with_rows(30'000), "f", ""); }),
+              HasSubstr("more rows than it can hold"));
 }
 
 TEST(LaneTable, ASpeedThatIsNoNumberIsRemarked) {

@@ -18,11 +18,13 @@
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/validate_file.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/refusal_of.h"
 
 namespace roadbed::map {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
 
 std::string data(const std::string& name) { return read_file(tests::data_folder() / name); }
@@ -347,6 +349,16 @@ TEST(RepairMap, RefusesFormatsThatItDoesNotKnowAndFilesThatAreNoMap) {
   EXPECT_THROW(repair_file(data("surface.geojson"), "a.geojson"), InputError);
   EXPECT_THROW(repair_file("<osm/>", "a.osm"), InputError);
   EXPECT_THROW(repair_file("<OpenDRIVE>", "a.xodr"), InputError);
+}
+
+// An id with a line break, by its number, moves what stands behind it in the text that is parsed.
+TEST(RepairMap, NamesTheFileWhoseControlCharactersItCannotWriteAround) {
+  std::string bytes = data("town.xodr");
+  const std::string id = R"(id="1")", type = R"( type="driving")";
+  bytes.replace(bytes.find(id), id.size(), R"(id="1&#10;x")");
+  bytes.erase(bytes.find(type), type.size());
+  EXPECT_THAT(tests::refusal_of([&] { repair_file(bytes, "a.xodr"); }),
+              AllOf(HasSubstr("a.xodr: "), HasSubstr("control characters")));
 }
 
 TEST(RepairMapReal, MakesRealMapsNoWorse) {

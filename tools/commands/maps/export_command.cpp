@@ -113,6 +113,7 @@ class ExportCommand : public Command {
     const map::Format& format = map::format_to_write(output_, suffix());
     check_layers(format, layers_);
     map::check_writable(output_, force_);
+    if (!crs_.empty() && crs_ != "unknown") check_system();
     const std::string file = input_.filename().string();
     map::MapPageOptions page{.title = file == "-" ? map::input_name(input_) : file, .file = file};
     threads_ = common.several_threads();
@@ -136,6 +137,10 @@ class ExportCommand : public Command {
     if (fault.empty()) fault = profile_fault();
     if (fault.empty() && suffix() == ".nod.xml" && map::is_standard_stream(output_)) {
       fault = "-o - holds one file, and .nod.xml is several";
+    }
+    if (fault.empty() && suffix() == ".nod.xml" &&
+        output_.filename().string().find(',') != std::string::npos) {
+      fault = "netconvert takes a comma in the name of a .nod.xml as two names";
     }
     return fault.empty() ? overlay_fault() : fault;
   }
@@ -329,6 +334,14 @@ class ExportCommand : public Command {
     refuse(input_.string(), fmt::format("the coordinate system is known: \"{}\"", own),
            "a map of unknown system for --anchor",
            "leave --anchor out, or say --crs unknown if it is wrong");
+  }
+
+  // Also for outputs that have no place in them.
+  void check_system() const {
+    const std::string fault = map::projection_fault(crs_);
+    if (fault.empty()) return;
+    refuse("--crs", fmt::format("\"{}\": PROJ cannot use it: {}", crs_, fault),
+           "a code (EPSG:32632), a PROJ string or well-known text", "correct it");
   }
 
   bool is_own_system(const map::RoadMap& road_map) const {
