@@ -290,6 +290,7 @@ CASES = [
     Case("points above each other", inputs.pcd_column, 1000, CLOUD + OBJECTS),
     Case("compressed .pcd", inputs.pcd_bomb, 50_000, CLOUD),
     Case("packed log", inputs.log_bomb, 10_000_000, LOG),
+    Case("packed cloud in a log", inputs.log_of_zeros, 2_000_000, CLOUD + OBJECTS),
     Case("log of huge chunks", inputs.log_chunks, 10_000, LOG),
     Case("full .bt", inputs.bt_checked, 10_000, OCTREE),
     Case("full .ot", inputs.ot_chain, 10_000, OCTREE),

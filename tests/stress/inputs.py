@@ -944,6 +944,49 @@ def log_bomb(folder: Path, n: int) -> Path:
     return written(folder / "in.mcap", gzip.compress(record, 9, mtime=0))
 
 
+def zstandard(before: bytes, zeros: int, after: bytes) -> bytes:
+    """A frame of Zstandard (RFC 8878): bytes as they are, and many zeros, four bytes for 128 KiB."""
+    def block(kind: int, size: int, content: bytes, is_last: bool = False) -> bytes:
+        return struct.pack("<I", is_last | kind << 1 | size << 3)[:3] + content
+
+    most = 1 << 17
+    full, rest = divmod(zeros, most)
+    blocks = block(0, len(before), before) + full * block(1, most, b"\x00") + block(1, rest, b"\x00")
+    size = struct.pack("<I", len(before) + zeros + len(after))
+    return b"\x28\xb5\x2f\xfd\xa0" + size + blocks + block(0, len(after), after, True)
+
+
+def log_of_zeros(folder: Path, n: int) -> Path:
+    """MCAP with a packed chunk that holds a cloud of n bytes, all of its points in one place."""
+    def text(word: str) -> bytes:
+        return struct.pack("<I", len(word)) + word.encode()
+
+    def record(kind: int, content: bytes) -> bytes:
+        return bytes([kind]) + struct.pack("<Q", len(content)) + content
+
+    def cdr(word: str, size: int) -> bytes:
+        return struct.pack("<I", len(word) + 1) + word.encode().ljust(size, b"\x00")
+
+    points = n // 12
+    head = b"\x00\x01\x00\x00" + struct.pack("<iI", 1, 0) + cdr("map", 4)
+    head += struct.pack("<III", 1, points, 3)
+    for i, axis in enumerate("xyz"):
+        head += cdr(axis, 4) + struct.pack("<IB3xI", 4 * i, 7, 1)
+    head += struct.pack("<B3xIII", 0, 12, 12 * points, 12 * points)
+    size = 22 + len(head) + 12 * points + 1
+    schema = text("sensor_msgs/msg/PointCloud2") + text("ros2msg") + text("")
+    channel = text("/points") + text("cdr") + text("")
+    topic = record(3, struct.pack("<H", 1) + schema) + record(4, struct.pack("<HH", 1, 1) + channel)
+    message = b"\x05" + struct.pack("<QHIQQ", size, 1, 0, 10**9, 10**9) + head
+    packed = zstandard(topic + message, 12 * points, b"\x01")
+    unpacked = len(topic) + len(message) + 12 * points + 1
+    chunk = struct.pack("<QQQI", 0, 0, unpacked, 0) + text("zstd")
+    chunk += struct.pack("<Q", len(packed)) + packed
+    magic = b"\x89MCAP0\r\n"
+    records = record(6, chunk) + record(15, bytes(4)) + record(2, bytes(20))
+    return written(folder / "in.mcap", magic + records + magic)
+
+
 def log_chunks(folder: Path, n: int) -> Path:
     """MCAP with n chunks that hold nothing and claim a terabyte each."""
     chunk = struct.pack("<QQQI", 0, 0, 1 << 40, 0) + struct.pack("<I4sQ", 4, b"zstd", 0)
